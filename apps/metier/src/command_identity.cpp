@@ -1,14 +1,18 @@
 #include "command_identity.hpp"
 
 #include <fmt/format.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
 #include <utility>
 
 #include "metier/opcua/discovery.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/server/user_folders.hpp"
-#include "password.hpp"
 
 namespace metier::app {
 namespace {
@@ -36,7 +40,50 @@ Result<bool> offersNoSecurity(const std::string& url, std::chrono::milliseconds 
                        [](const auto& endpoint) { return endpoint.security_mode == Mode::none; });
 }
 
+/// Hides what is typed until its end.
+class Silence {
+public:
+    Silence() : is_terminal_(tcgetattr(STDIN_FILENO, &before_) == 0) {
+        if (is_terminal_) {
+            auto silent = before_;
+            silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+            tcsetattr(STDIN_FILENO, TCSAFLUSH, &silent);
+        }
+    }
+    ~Silence() {
+        if (is_terminal_) {
+            tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);
+        }
+    }
+    Silence(const Silence&) = delete;
+    Silence& operator=(const Silence&) = delete;
+    bool isTerminal() const noexcept { return is_terminal_; }
+
+private:
+    termios before_{};
+    bool is_terminal_;
+};
+
 }  // namespace
+
+Result<std::string> readPassword(const std::string& user) {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): the environment never changes
+    if (const char* given = std::getenv("METIER_PASSWORD"); given != nullptr) {
+        return std::string(given);
+    }
+    const Silence silence;
+    if (!silence.isTerminal()) {
+        return fail(Errc::access_denied,
+                    fmt::format("the password of {} is to be in METIER_PASSWORD, or to be typed "
+                                "at a terminal",
+                                user));
+    }
+    fmt::print(stderr, "password of {}: ", user);
+    std::string password;
+    std::getline(std::cin, password);
+    fmt::print(stderr, "\n");
+    return password;
+}
 
 CommandIdentity::CommandIdentity(const server::Security& security, const std::string& user)
     : security_(security), user_(user) {}
@@ -58,12 +105,12 @@ Result<void> CommandIdentity::secure(opcua::ClientOptions& options, const std::s
 
 Result<void> CommandIdentity::prepare() const {
     if (!credentials_) {
-        METIER_ASSIGN(auto made, security_.credentials(
-                                     "command", {.application_name = "metier command",
-                                                 .application_uri = fmt::format(
-                                                     "urn:{}:metier:command", server::hostName()),
-                                                 .hosts = {server::hostName()}}));
-        credentials_ = std::move(made);
+        METIER_ASSIGN(
+            credentials_,
+            security_.credentials("command", {.application_name = "metier command",
+                                              .application_uri = fmt::format(
+                                                  "urn:{}:metier:command", server::hostName()),
+                                              .hosts = {server::hostName()}}));
     }
     if (!user_.empty() && !login_) {
         METIER_ASSIGN(auto password, readPassword(user_));

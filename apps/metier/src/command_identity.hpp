@@ -8,6 +8,11 @@
 
 namespace metier::app {
 
+/// Reads the password from the environment variable METIER_PASSWORD, else from the terminal,
+/// without showing it.
+/// Errors: access_denied, if there is neither.
+Result<std::string> readPassword(const std::string& user);
+
 /// Name of a command to the servers that it speaks to: a certificate that all commands share, and a
 /// user if one is named. Both are made, and the password asked for, when the first closed server
 /// needs them.

@@ -4,6 +4,9 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include <string>
+#include <utility>
+
 #include "metier/base/error.hpp"
 
 namespace metier::app {
@@ -19,13 +22,28 @@ enum class Exit : int {
 
 /// Prints the error to standard error and gives the exit status that fits it.
 Exit report(const Error& error);
-/// The same for what is wrong with the command line or with a file it names.
-Exit reportUsage(const Error& error);
+/// The exit status of a command; reports the error of one that failed.
+Exit exitOf(const Result<Exit>& ended);
+/// Has an error be one of the command line, or of a file that it names: its exit status is `usage`.
+template <typename T>
+Result<T> asUsage(Result<T> result) {
+    return std::move(result).map_error([](Error error) {
+        return Error{Errc::invalid_argument, std::move(error.message)};
+    });
+}
+/// Writes a file. Errors: invalid_argument if it cannot be written.
+Result<void> writeFile(const std::string& file, const std::string& text);
+
+/// Has an option refuse values outside of [low, high], and show its default in the help.
+template <typename T>
+void within(CLI::Option* option, T low, T high) {
+    option->check(CLI::Range(low, high))->capture_default_str();
+}
 
 struct CommandContext;
 
-// Each adds one subcommand, which stores in `exit`, or in the context, how it ended.
-void addVirtual(CLI::App& app, Exit& exit);
+// Each adds one subcommand, which stores in the context how it ended.
+void addVirtual(CLI::App& app, CommandContext& context);
 void addUp(CLI::App& app, CommandContext& context);
 void addServe(CLI::App& app, CommandContext& context);
 void addList(CLI::App& app, CommandContext& context);
@@ -37,20 +55,20 @@ void addFind(CLI::App& app, CommandContext& context);
 void addDiscovery(CLI::App& app, CommandContext& context);
 void addSquare(CLI::App& app, CommandContext& context);
 void addDemo(CLI::App& app, CommandContext& context);
-void addFk(CLI::App& app, Exit& exit);
-void addIk(CLI::App& app, Exit& exit);
-void addCheck(CLI::App& app, Exit& exit);
-void addPlot(CLI::App& app, Exit& exit);
-void addGraph(CLI::App& app, Exit& exit);
+void addFk(CLI::App& app, CommandContext& context);
+void addIk(CLI::App& app, CommandContext& context);
+void addCheck(CLI::App& app, CommandContext& context);
+void addPlot(CLI::App& app, CommandContext& context);
+void addGraph(CLI::App& app, CommandContext& context);
 void addSkillCommands(CLI::App& app, CommandContext& context);
 void addOwn(CLI::App& app, CommandContext& context);
 void addAudit(CLI::App& app, CommandContext& context);
 void addDashboard(CLI::App& app, CommandContext& context);
-void addHistory(CLI::App& app, Exit& exit);
+void addHistory(CLI::App& app, CommandContext& context);
 void addReplay(CLI::App& app, CommandContext& context);
-void addTrace(CLI::App& app, Exit& exit);
+void addTrace(CLI::App& app, CommandContext& context);
 void addTrust(CLI::App& app, CommandContext& context);
 void addUser(CLI::App& app, CommandContext& context);
-void addCompletion(CLI::App& app, Exit& exit);
+void addCompletion(CLI::App& app, CommandContext& context);
 
 }  // namespace metier::app

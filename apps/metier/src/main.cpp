@@ -27,33 +27,16 @@ constexpr const char* kAbout =
     "  metier check ur5 --to-pose 0.4,-0.1,0.3,3.14,0,0 --linear    would it move, and how";
 
 void addCommands(CLI::App& app, metier::app::CommandContext& context) {
-    metier::app::addDemo(app, context);
-    metier::app::addUp(app, context);
-    metier::app::addServe(app, context);
-    metier::app::addList(app, context);
-    metier::app::addRun(app, context);
-    metier::app::addWatch(app, context);
-    metier::app::addHalt(app, context);
-    metier::app::addSkillCommands(app, context);
-    metier::app::addOwn(app, context);
-    metier::app::addAudit(app, context);
-    metier::app::addHistory(app, context.exit);
-    metier::app::addReplay(app, context);
-    metier::app::addTrace(app, context.exit);
-    metier::app::addFind(app, context);
-    metier::app::addDiscovery(app, context);
-    metier::app::addSquare(app, context);
-    metier::app::addPickPlace(app, context);
-    metier::app::addFk(app, context.exit);
-    metier::app::addIk(app, context.exit);
-    metier::app::addCheck(app, context.exit);
-    metier::app::addPlot(app, context.exit);
-    metier::app::addGraph(app, context.exit);
-    metier::app::addDashboard(app, context);
-    metier::app::addVirtual(app, context.exit);
-    metier::app::addTrust(app, context);
-    metier::app::addUser(app, context);
-    metier::app::addCompletion(app, context.exit);
+    using namespace metier::app;
+    for (const auto add : {addDemo,      addUp,    addServe,     addList,
+                           addRun,       addWatch, addHalt,      addSkillCommands,
+                           addOwn,       addAudit, addHistory,   addReplay,
+                           addTrace,     addFind,  addDiscovery, addSquare,
+                           addPickPlace, addFk,    addIk,        addCheck,
+                           addPlot,      addGraph, addDashboard, addVirtual,
+                           addTrust,     addUser,  addCompletion}) {
+        add(app, context);
+    }
 }
 
 /// Sends the log to standard error, since standard output belongs to results.
@@ -95,8 +78,7 @@ int run(int argc, char** argv) {
     try {
         app.parse(argumentsOf(argc, argv));
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? static_cast<int>(Exit::success)
-                                    : static_cast<int>(Exit::usage);
+        return static_cast<int>(app.exit(error) == 0 ? Exit::success : Exit::usage);
     }
     return static_cast<int>(context.exit);
 }

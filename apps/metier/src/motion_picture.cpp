@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
 #include "metier/path_evaluation/motion_drawing.hpp"
 #include "metier/records/json.hpp"
 
@@ -15,12 +13,7 @@ Result<void> write(const std::string& file, const std::string& svg) {
         fmt::print("{}", svg);
         return {};
     }
-    std::ofstream out(file);
-    out << svg;
-    out.close();
-    if (!out) {
-        return fail(Errc::invalid_argument, fmt::format("{}: cannot be written", file));
-    }
+    METIER_TRY(writeFile(file, svg));
     fmt::print(stderr, "drawn in {}\n", file);
     return {};
 }
@@ -60,40 +53,26 @@ Result<DrawnMotion> recordedMotion(const motion::RobotModel& model,
     return motion;
 }
 
-Exit drawInto(const std::string& file, const motion::RobotModel& model, const std::string& title,
-              const DrawnMotion& motion) {
-    const auto svg = path_evaluation::drawMotion(
-        model, {title.empty() ? titleOf(model) : title, motion.note, motion.samples,
-                motion.tool_positions, motion.asked_speed});
-    if (!svg) {
-        return report(svg.error());
-    }
-    const auto written = write(file, *svg);
-    return written ? Exit::success : reportUsage(written.error());
+Result<Exit> drawInto(const std::string& file, const motion::RobotModel& model,
+                      const std::string& title, const DrawnMotion& motion) {
+    METIER_ASSIGN(const auto svg,
+                  path_evaluation::drawMotion(
+                      model, {title.empty() ? titleOf(model) : title, motion.note, motion.samples,
+                              motion.tool_positions, motion.asked_speed}));
+    METIER_TRY(write(file, svg));
+    return Exit::success;
 }
 
-Exit drawExecution(const ExecutionDrawing& drawing) {
-    const auto store = openRecords(drawing.records);
-    const auto execution =
-        store ? (*store)->find(drawing.id) : Result<records::ExecutionRow>(fail(store.error()));
-    if (!execution) {
-        return report(execution.error());
-    }
-    const auto record = pathOf(**store, *execution);
-    if (!record) {
-        return report(record.error());
-    }
-    const auto model = robotOf(*execution, drawing.robot);
-    if (!model) {
-        return reportUsage(model.error());
-    }
-    const auto motion = recordedMotion(
-        *model, *record, fmt::format("execution {}", execution->number), drawing.tool);
-    if (!motion) {
-        return report(motion.error());
-    }
-    return drawInto(drawing.svg, *model,
-                    drawing.title.empty() ? titleOf(*execution) : drawing.title, *motion);
+Result<Exit> drawExecution(const ExecutionDrawing& drawing) {
+    METIER_ASSIGN(const auto store, records::Store::open(drawing.records));
+    METIER_ASSIGN(const auto execution, store->find(drawing.id));
+    METIER_ASSIGN(const auto record, pathOf(*store, execution));
+    METIER_ASSIGN(const auto model, asUsage(robotOf(execution, drawing.robot)));
+    METIER_ASSIGN(
+        const auto motion,
+        recordedMotion(model, record, fmt::format("execution {}", execution.number), drawing.tool));
+    return drawInto(drawing.svg, model, drawing.title.empty() ? titleOf(execution) : drawing.title,
+                    motion);
 }
 
 }  // namespace metier::app

@@ -30,8 +30,8 @@ Result<DrawnMotion> recordedMotion(const motion::RobotModel& model,
                                    const std::string& name, const std::string& tool);
 /// Draws into the file; "-": standard output.
 /// \param title empty: the robot's name
-Exit drawInto(const std::string& file, const motion::RobotModel& model, const std::string& title,
-              const DrawnMotion& motion);
+Result<Exit> drawInto(const std::string& file, const motion::RobotModel& model,
+                      const std::string& title, const DrawnMotion& motion);
 
 /// Options for the drawing of a recorded execution.
 struct ExecutionDrawing {
@@ -42,6 +42,6 @@ struct ExecutionDrawing {
     std::string title;
     std::string svg;
 };
-Exit drawExecution(const ExecutionDrawing& drawing);
+Result<Exit> drawExecution(const ExecutionDrawing& drawing);
 
 }  // namespace metier::app

@@ -28,7 +28,8 @@ struct PickPlaceSettings {
 /// Runs every PickPlaceSkill of the servers with its parts, all at the same time; shows the
 /// progress and prints the result. After a failed part the skill is Reset, and takes the next part
 /// or that one again.
-Exit pickAndPlace(const CommandIdentity& identity, const std::vector<std::string>& urls,
-                  const PickPlaceSettings& settings);
+/// Errors: a server that does not answer; no PickPlaceSkill.
+Result<Exit> pickAndPlace(const CommandIdentity& identity, const std::vector<std::string>& urls,
+                          const PickPlaceSettings& settings);
 
 }  // namespace metier::app

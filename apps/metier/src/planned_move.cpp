@@ -49,18 +49,13 @@ Result<std::vector<double>> maxima(const MoveOptions& options, const std::string
 
 Result<void> readCommon(const MoveOptions& options, const RobotModel& model,
                         MoveParameters& parameters) {
-    auto velocity = maxima(options, options.max_velocity, model);
-    auto acceleration = maxima(options, options.max_acceleration, model);
-    if (!velocity || !acceleration) {
-        return fail(velocity ? acceleration.error() : velocity.error());
-    }
+    METIER_ASSIGN(parameters.max_velocity, maxima(options, options.max_velocity, model));
+    METIER_ASSIGN(parameters.max_acceleration, maxima(options, options.max_acceleration, model));
     if (!options.arm_angle.empty()) {
         METIER_ASSIGN(const auto angle, parseNumbers({{options.arm_angle}}, "arm angle"));
         parameters.redundancy_angle = angle.front();
     }
     parameters.tool_frame = options.tool;
-    parameters.max_velocity = std::move(*velocity);
-    parameters.max_acceleration = std::move(*acceleration);
     parameters.speed_override = options.speed_override;
     parameters.relative =
         static_cast<std::int32_t>(options.relative == "base"   ? Relative::base

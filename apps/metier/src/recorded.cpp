@@ -37,10 +37,6 @@ void addRecords(CLI::App& command, std::string& url) {
         ->capture_default_str();
 }
 
-Result<std::unique_ptr<records::Store>> openRecords(const std::string& url) {
-    return records::Store::open(url);
-}
-
 Result<motion::RobotModel> robotOf(const records::ExecutionRow& execution,
                                    const std::string& named) {
     if (!named.empty()) {

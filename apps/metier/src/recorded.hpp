@@ -18,8 +18,6 @@ std::string defaultRecords();
 CLI::Validator withoutPassword();
 /// Adds --records to a command.
 void addRecords(CLI::App& command, std::string& url);
-/// Errors: as Store::open().
-Result<std::unique_ptr<records::Store>> openRecords(const std::string& url);
 
 /// The model of the robot that an execution moved: the product that its device is, or the model
 /// with the longest name that is in those of its device and server.

@@ -17,10 +17,7 @@ constexpr std::string_view kExtension = ".toml";
 
 /// Folder of the models: of the installed program, else of the source tree from which it was built.
 fs::path modelsFolder() {
-    std::error_code error;
-    const auto program = fs::read_symlink("/proc/self/exe", error);
-    const auto installed = program.parent_path().parent_path() / "share" / "metier" / "models";
-    return !error && fs::is_directory(installed, error) ? installed : fs::path(METIER_MODELS_DIR);
+    return sharedFolder("models", METIER_MODELS_DIR);
 }
 
 bool isFile(const std::string& robot) {
@@ -40,6 +37,13 @@ std::vector<std::string> namesIn(const fs::path& folder) {
 }
 
 }  // namespace
+
+fs::path sharedFolder(const char* name, const char* otherwise) {
+    std::error_code error;
+    const auto program = fs::read_symlink("/proc/self/exe", error);
+    const auto installed = program.parent_path().parent_path() / "share" / "metier" / name;
+    return !error && fs::is_directory(installed, error) ? installed : fs::path(otherwise);
+}
 
 void addRobot(CLI::App& command, std::string& robot) {
     command

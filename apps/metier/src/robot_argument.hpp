@@ -1,14 +1,16 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
-#include <vector>
-
 #include <vector>
 
 #include "commands.hpp"
 #include "metier/motion/robot_model.hpp"
 
 namespace metier::app {
+
+/// Folder share/metier/NAME of the installed program; of one that is not installed the other.
+std::filesystem::path sharedFolder(const char* name, const char* otherwise);
 
 /// Adds the argument ROBOT to a command: a model's name or its file.
 void addRobot(CLI::App& command, std::string& robot);

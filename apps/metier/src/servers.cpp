@@ -27,6 +27,11 @@ Result<std::vector<std::string>> addressesOf(const ServerChoice& choice) {
     return urls;
 }
 
+SteadyTime deadlineIn(double seconds) {
+    return std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                                  std::chrono::duration<double>(seconds));
+}
+
 Result<std::unique_ptr<opcua::Client>> connectTo(const CommandIdentity& identity,
                                                  const std::string& url, OnLoss on_loss) {
     opcua::ClientOptions options;
@@ -84,13 +89,10 @@ void addSkillChoice(CLI::App& command, SkillChoice& choice) {
 
 Result<OpenSkill> openSkill(const CommandIdentity& identity, const SkillChoice& choice,
                             OnLoss on_loss) {
-    auto client = connectTo(identity, choice.url, on_loss);
-    if (!client) {
-        return fail(client.error());
-    }
-    METIER_ASSIGN(auto address, client::findSkill(**client, choice.skill));
-    METIER_ASSIGN(auto skill, client::SkillHandle::open(**client, std::move(address)));
-    return OpenSkill{std::move(*client), std::move(skill)};
+    METIER_ASSIGN(auto client, connectTo(identity, choice.url, on_loss));
+    METIER_ASSIGN(auto address, client::findSkill(*client, choice.skill));
+    METIER_ASSIGN(auto skill, client::SkillHandle::open(*client, std::move(address)));
+    return OpenSkill{std::move(client), std::move(skill)};
 }
 
 }  // namespace metier::app

@@ -23,6 +23,9 @@ void addServerChoice(CLI::App& command, ServerChoice& choice);
 /// Errors: invalid_argument if neither addresses nor a cell are given, or the cell is wrong.
 Result<std::vector<std::string>> addressesOf(const ServerChoice& choice);
 
+/// The time when so many seconds are over.
+SteadyTime deadlineIn(double seconds);
+
 /// Reaction of a command to the loss of its connection.
 enum class OnLoss { fail, reconnect };
 

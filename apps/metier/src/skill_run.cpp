@@ -85,11 +85,10 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
     std::optional<client::ControlHandle> control;
     if (run.owner.lease_ms != 0) {
         const auto* controller = skill.address().controller();
-        METIER_ASSIGN(auto taken,
+        METIER_ASSIGN(control,
                       client::ControlHandle::acquire(
                           client, controller == nullptr ? opcua::NodeId() : controller->node,
                           {.lease = run.owner.lease(), .on_loss = run.owner.action()}));
-        control = std::move(taken);
     }
     if (!control && run.owner.action() == skill::OwnerLossAction::skill_default &&
         !skill.knowsExecutions()) {
@@ -108,10 +107,7 @@ Exit runSkill(const link::StopSignal& signal, OpenSkill& open, const skill::Valu
     auto& skill = open.skill;
     showTransitions(skill);
     const HaltOnSignal halt_on_signal(signal, *open.client, skill.address());
-    const auto deadline =
-        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                               std::chrono::duration<double>(run.timeout));
-    const auto result = runOwned(skill, *open.client, {values, deadline, run.owner});
+    const auto result = runOwned(skill, *open.client, {values, deadlineIn(run.timeout), run.owner});
     if (!result) {
         return reportOutcome(result.error());
     }

@@ -79,16 +79,10 @@ public:
 
 private:
     Result<void> prepare() {
-        METIER_ASSIGN(auto nodes, client::findKinematics(client_, arm_.linear));
-        nodes_ = std::move(nodes);
+        METIER_ASSIGN(nodes_, client::findKinematics(client_, arm_.linear));
         METIER_TRY(place());
-        auto ptp = SkillHandle::open(client_, arm_.ptp);
-        auto linear = SkillHandle::open(client_, arm_.linear);
-        if (!ptp || !linear) {
-            return fail(ptp ? linear.error() : ptp.error());
-        }
-        ptp_ = std::move(*ptp);
-        linear_ = std::move(*linear);
+        METIER_ASSIGN(ptp_, SkillHandle::open(client_, arm_.ptp));
+        METIER_ASSIGN(linear_, SkillHandle::open(client_, arm_.linear));
         return {};
     }
 
@@ -97,9 +91,7 @@ private:
         METIER_ASSIGN(const auto data, client::readKinematics(client_, nodes_));
         METIER_ASSIGN(const auto joints, client::readJointPosition(client_, nodes_));
         METIER_ASSIGN(const auto chain, server::toChain(data, joints));
-        METIER_ASSIGN(const auto square,
-                      path_evaluation::placeSquare(chain, chain.home, settings_.side));
-        square_ = square;
+        METIER_ASSIGN(square_, path_evaluation::placeSquare(chain, chain.home, settings_.side));
         // Shared with the subscription's callback.
         recorder_ = std::make_shared<PathRecorder>(chain);
         return {};
@@ -129,13 +121,11 @@ private:
     }
 
     Result<SquareResult> goAround() {
-        auto subscription = client::subscribeJointPosition(
-            client_, nodes_, kSampling,
-            [recorder = recorder_](const auto& joints) { recorder->add(joints); });
-        const auto missed_before = client::readMissedCycles(client_, nodes_);
-        if (!subscription || !missed_before) {
-            return fail(subscription ? missed_before.error() : subscription.error());
-        }
+        METIER_ASSIGN(const auto subscription,
+                      client::subscribeJointPosition(
+                          client_, nodes_, kSampling,
+                          [recorder = recorder_](const auto& joints) { recorder->add(joints); }));
+        METIER_ASSIGN(const auto missed_before, client::readMissedCycles(client_, nodes_));
         METIER_TRY(noteNow());
         const auto start = std::chrono::steady_clock::now();
         for (int lap = 0; lap < settings_.laps; ++lap) {
@@ -144,7 +134,7 @@ private:
         const auto time = std::chrono::steady_clock::now() - start;
         METIER_TRY(noteNow());
         METIER_ASSIGN(const auto missed, client::readMissedCycles(client_, nodes_));
-        return result(time, missed - *missed_before);
+        return result(time, missed - missed_before);
     }
 
     Result<void> goOneLap(int lap) {

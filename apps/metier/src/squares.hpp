@@ -18,7 +18,8 @@ void addSquareOptions(CLI::App& command, SquareSettings& settings, SquareOutput&
 
 /// Moves every arm of the servers along its square, all at the same time; shows the progress and
 /// prints the result.
-Exit moveAlongSquares(const CommandIdentity& identity, const std::vector<std::string>& urls,
-                      const SquareSettings& settings, const SquareOutput& output);
+/// Errors: a server that does not answer; no arm that can go along a square.
+Result<Exit> moveAlongSquares(const CommandIdentity& identity, const std::vector<std::string>& urls,
+                              const SquareSettings& settings, const SquareOutput& output);
 
 }  // namespace metier::app

@@ -20,16 +20,23 @@ std::optional<T> numberIn(std::string_view text) {
     return metier::numberIn<T>(text.substr(std::min(text.find_first_not_of(' '), text.size())));
 }
 
-std::optional<std::vector<double>> numbersIn(std::string_view text) {
-    std::vector<double> values;
-    for (const auto part : split(text, ',')) {
-        const auto value = numberIn<double>(part);
+/// The parts of a list, each read by `read`; nothing if one cannot be read.
+template <typename T>
+std::optional<std::vector<T>> listIn(std::string_view text, char separator,
+                                     std::optional<T> (*read)(std::string_view)) {
+    std::vector<T> values;
+    for (const auto part : split(text, separator)) {
+        const auto value = read(part);
         if (!value) {
             return std::nullopt;
         }
         values.push_back(*value);
     }
     return values;
+}
+
+std::optional<std::vector<double>> numbersIn(std::string_view text) {
+    return listIn(text, ',', &numberIn<double>);
 }
 
 std::optional<skill::Frame> frameIn(std::string_view text) {
@@ -41,7 +48,7 @@ std::optional<skill::Frame> frameIn(std::string_view text) {
     return skill::Frame{v[0], v[1], v[2], v[3], v[4], v[5]};
 }
 
-std::optional<Value> vectorIn(std::string_view text) {
+std::optional<skill::Vector3> vectorIn(std::string_view text) {
     const auto values = numbersIn(text);
     if (!values || values->size() != 3) {
         return std::nullopt;
@@ -49,30 +56,11 @@ std::optional<Value> vectorIn(std::string_view text) {
     return skill::Vector3{(*values)[0], (*values)[1], (*values)[2]};
 }
 
-std::optional<Value> rangesIn(std::string_view text) {
-    std::vector<skill::Range> ranges;
-    for (const auto part : split(text, ',')) {
-        const auto ends = split(part, ':');
-        const auto low = ends.size() == 2 ? numberIn<double>(ends[0]) : std::nullopt;
-        const auto high = ends.size() == 2 ? numberIn<double>(ends[1]) : std::nullopt;
-        if (!low || !high) {
-            return std::nullopt;
-        }
-        ranges.push_back({*low, *high});
-    }
-    return ranges;
-}
-
-std::optional<Value> framesIn(std::string_view text) {
-    std::vector<skill::Frame> frames;
-    for (const auto part : split(text, ';')) {
-        const auto frame = frameIn(part);
-        if (!frame) {
-            return std::nullopt;
-        }
-        frames.push_back(*frame);
-    }
-    return frames;
+std::optional<skill::Range> rangeIn(std::string_view text) {
+    const auto ends = split(text, ':');
+    const auto low = ends.size() == 2 ? numberIn<double>(ends[0]) : std::nullopt;
+    const auto high = ends.size() == 2 ? numberIn<double>(ends[1]) : std::nullopt;
+    return low && high ? std::optional(skill::Range{*low, *high}) : std::nullopt;
 }
 
 std::optional<Value> booleanIn(std::string_view text) {
@@ -82,12 +70,8 @@ std::optional<Value> booleanIn(std::string_view text) {
     return std::nullopt;
 }
 
-std::optional<Value> textsIn(std::string_view text) {
-    std::vector<std::string> texts;
-    for (const auto part : split(text, ',')) {
-        texts.emplace_back(part);
-    }
-    return texts;
+std::optional<std::string> textIn(std::string_view text) {
+    return std::string(text);
 }
 
 template <typename T>
@@ -114,15 +98,15 @@ std::optional<Value> valueIn(ValueType type, std::string_view text) {
         case ValueType::frame:
             return asValue(frameIn(text));
         case ValueType::vector3:
-            return vectorIn(text);
+            return asValue(vectorIn(text));
         case ValueType::numbers:
             return asValue(numbersIn(text));
         case ValueType::texts:
-            return textsIn(text);
+            return asValue(listIn(text, ',', &textIn));
         case ValueType::ranges:
-            return rangesIn(text);
+            return asValue(listIn(text, ',', &rangeIn));
         case ValueType::frames:
-            return framesIn(text);
+            return asValue(listIn(text, ';', &frameIn));
     }
     return std::nullopt;
 }

@@ -75,7 +75,9 @@ TEST(Outcome, HasAnExitStatusOfItsOwnIfNobodyKnowsIt) {
     failure.code = Errc::execution_lost;
     EXPECT_EQ(reportOutcome(failure), Exit::execution_lost);
     EXPECT_EQ(report({Errc::invalid_argument, "wrong"}), Exit::usage);
-    EXPECT_EQ(reportUsage({Errc::not_found, "missing"}), Exit::usage);
+    EXPECT_EQ(exitOf(asUsage(Result<Exit>(fail(Errc::not_found, "missing")))), Exit::usage);
+    EXPECT_EQ(exitOf(fail(Errc::not_found, "missing")), Exit::failed);
+    EXPECT_EQ(exitOf(Exit::unknown), Exit::unknown);
     const auto printed = ::testing::internal::GetCapturedStderr();
     EXPECT_THAT(printed, HasSubstr("metier: missing\n"));
     EXPECT_EQ(printed.find('\x1b'), std::string::npos);
@@ -107,10 +109,11 @@ TEST(MotionPicture, AFileThatCannotBeWrittenIsAnErrorOfTheCommandLine) {
     const auto model = loadRobot("ur5").value();
     const auto drawn = recordedMotion(model, standing(6), "a.csv", "").value();
     ::testing::internal::CaptureStderr();
-    EXPECT_EQ(drawInto("/nonexistent/picture.svg", model, "", drawn), Exit::usage);
+    EXPECT_EQ(exitOf(drawInto("/nonexistent/picture.svg", model, "", drawn)), Exit::usage);
     EXPECT_THAT(::testing::internal::GetCapturedStderr(),
                 HasSubstr("/nonexistent/picture.svg: cannot be written"));
-    EXPECT_EQ(drawInto("/dev/full", model, "", drawn), Exit::usage) << "a disk that is full";
+    EXPECT_EQ(exitOf(drawInto("/dev/full", model, "", drawn)), Exit::usage)
+        << "a disk that is full";
 }
 
 TEST(RecordedRobot, IsTheProductOrTheLongestNameThatFits) {

@@ -97,16 +97,13 @@ Exit reportVerified(const fs::path& log, const security::Verified& verified, boo
     return whole_logs ? Exit::failed : Exit::success;
 }
 
-Exit runVerify(const AuditOptions& options) {
-    const auto logs = chosenLogs(options);
-    const auto anchors = logs ? anchorsOf(options) : fail(logs.error());
-    if (!anchors) {
-        return reportUsage(anchors.error());
-    }
+Result<Exit> runVerify(const AuditOptions& options) {
+    METIER_ASSIGN(const auto logs, asUsage(chosenLogs(options)));
+    METIER_ASSIGN(const auto anchors, anchorsOf(options));
     auto exit = Exit::success;
-    auto missing = *anchors;
-    for (const auto& log : *logs) {
-        const auto verified = security::verify(log, *anchors);
+    auto missing = anchors;
+    for (const auto& log : logs) {
+        const auto verified = security::verify(log, anchors);
         if (!verified) {
             report(verified.error());
             exit = Exit::failed;
@@ -153,18 +150,14 @@ Result<std::string> anchorOfServer(const CommandIdentity& identity, const std::s
 }
 
 Result<std::string> anchorOfFile(const fs::path& log) {
-    const auto verified = security::verify(log);
-    return verified ? Result<std::string>(verified->last_chain) : fail(verified.error());
+    return security::verify(log).map([](const auto& verified) { return verified.last_chain; });
 }
 
-Exit runAnchor(const AuditOptions& options, const CommandIdentity& identity) {
+Result<Exit> runAnchor(const AuditOptions& options, const CommandIdentity& identity) {
     std::vector<std::string> asked = options.files;
     if (asked.empty()) {
-        const auto logs = chosenLogs(options);
-        if (!logs) {
-            return reportUsage(logs.error());
-        }
-        asked.assign(logs->begin(), logs->end());
+        METIER_ASSIGN(const auto logs, asUsage(chosenLogs(options)));
+        asked.assign(logs.begin(), logs.end());
     }
     auto exit = Exit::success;
     for (const auto& one : asked) {
@@ -219,23 +212,19 @@ Result<void> showPart(const fs::path& part, const AuditOptions& options) {
     return {};
 }
 
-Exit runShow(const AuditOptions& options) {
-    const auto logs = chosenLogs(options);
-    if (!logs) {
-        return reportUsage(logs.error());
-    }
-    for (const auto& log : *logs) {
+Result<Exit> runShow(const AuditOptions& options) {
+    METIER_ASSIGN(const auto logs, asUsage(chosenLogs(options)));
+    for (const auto& log : logs) {
         for (const auto& part : security::partsOf(log)) {
-            if (const auto done = showPart(part, options); !done) {
-                return report(done.error());
-            }
+            METIER_TRY(showPart(part, options));
         }
     }
     return Exit::success;
 }
 
-void addFiles(CLI::App& command, AuditOptions& options) {
-    command.add_option("FILE", options.files, "Audit logs; the parts that follow one come with it");
+void addFiles(CLI::App& command, AuditOptions& options,
+              const char* files = "Audit logs; the parts that follow one come with it") {
+    command.add_option("FILE", options.files, files);
     command.add_option("--state", options.state,
                        "The state folder of servers, for all logs that are there");
 }
@@ -255,21 +244,20 @@ void addAudit(CLI::App& app, CommandContext& context) {
     addFiles(*verify, *options);
     verify->add_option("--anchor", options->anchors,
                        "A chain value that was newest once: fails unless a line still has it");
-    verify->callback([options, &context] { context.exit = runVerify(*options); });
+    verify->callback([options, &context] { context.exit = exitOf(runVerify(*options)); });
     auto* anchor = command->add_subcommand(
         "anchor",
         "Print the newest chain value of audit logs, to be kept elsewhere: as files have it, or as "
         "servers publish it");
-    anchor->add_option("FILE", options->files, "Audit logs, or servers: opc.tcp://host:port");
-    anchor->add_option("--state", options->state,
-                       "The state folder of servers, for all logs that are there");
-    anchor->callback([options, &context] { context.exit = runAnchor(*options, context.identity); });
+    addFiles(*anchor, *options, "Audit logs, or servers: opc.tcp://host:port");
+    anchor->callback(
+        [options, &context] { context.exit = exitOf(runAnchor(*options, context.identity)); });
     auto* show = command->add_subcommand("show", "Show the entries of audit logs");
     addFiles(*show, *options);
     show->add_option("--since", options->since, "From this time on (UTC), as 2026-11-22T09:30");
     show->add_option("--event", options->event, "Of this name only, as Start or Denied");
     show->add_flag("--json", options->json, "The lines as they are in the file");
-    show->callback([options, &context] { context.exit = runShow(*options); });
+    show->callback([options, &context] { context.exit = exitOf(runShow(*options)); });
 }
 
 }  // namespace metier::app

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <fstream>
 #include <memory>
 
+#include "command_context.hpp"
 #include "joint_text.hpp"
 #include "metier/path_evaluation/motion_curves.hpp"
 #include "metier/path_evaluation/motion_record.hpp"
@@ -128,42 +128,28 @@ Result<void> writeCsv(const std::string& file, const RobotModel& model, const Tr
         record.push_back({time, plan.sample(motion::Seconds(time)).position});
     }
     record.push_back({duration, plan.end()});
-    std::ofstream out(file);
-    out << path_evaluation::toCsv(record);
-    out.close();
-    if (!out) {
-        return fail(Errc::invalid_argument, fmt::format("{}: cannot be written", file));
-    }
-    return {};
+    return writeFile(file, path_evaluation::toCsv(record));
 }
 
-Exit runCheck(const CheckOptions& options) {
-    const auto model = loadRobot(options.move.robot);
-    if (!model) {
-        return reportUsage(model.error());
-    }
-    const auto move = planMove(*model, options.move);
-    if (!move) {
-        return reportUsage(move.error());
-    }
-    if (move->plan && !options.csv.empty()) {
-        if (const auto written = writeCsv(options.csv, *model, *move->plan); !written) {
-            return reportUsage(written.error());
-        }
+Result<Exit> runCheck(const CheckOptions& options) {
+    METIER_ASSIGN(const auto model, asUsage(loadRobot(options.move.robot)));
+    METIER_ASSIGN(const auto move, asUsage(planMove(model, options.move)));
+    if (move.plan && !options.csv.empty()) {
+        METIER_TRY(writeCsv(options.csv, model, *move.plan));
     }
     if (options.json) {
-        fmt::print("{}\n", jsonOf(*model, *move, options.points).dump(2));
-    } else if (move->plan) {
-        printPlan(*model, *move);
+        fmt::print("{}\n", jsonOf(model, move, options.points).dump(2));
+    } else if (move.plan) {
+        printPlan(model, move);
     } else {
-        printRefusal(*move, move->plan.error());
+        printRefusal(move, move.plan.error());
     }
-    return move->plan ? Exit::success : Exit::failed;
+    return move.plan ? Exit::success : Exit::failed;
 }
 
 }  // namespace
 
-void addCheck(CLI::App& app, Exit& exit) {
+void addCheck(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<CheckOptions>();
     auto* command = app.add_subcommand(
@@ -173,16 +159,15 @@ void addCheck(CLI::App& app, Exit& exit) {
         "started there, from the same joint positions. Refused: exit status 1.");
     addRobot(*command, options->move.robot);
     addMoveOptions(*command, options->move);
-    command
-        ->add_option("--points", options->points,
-                     "How many joint positions --json shows as preview, equally spaced in time")
-        ->check(CLI::Range(2, 100'000))
-        ->capture_default_str();
+    within(command->add_option(
+               "--points", options->points,
+               "How many joint positions --json shows as preview, equally spaced in time"),
+           2, 100'000);
     command->add_option("--csv", options->csv,
                         "Write the planned joint positions of every controller cycle into this "
                         "file: a heading, then lines time,q1,...,qn [s, rad]");
     command->add_flag("--json", options->json, "Print JSON, with a preview of the joint path");
-    command->callback([options, &exit] { exit = runCheck(*options); });
+    command->callback([options, &context] { context.exit = exitOf(runCheck(*options)); });
 }
 
 }  // namespace metier::app

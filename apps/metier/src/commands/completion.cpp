@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 
 namespace metier::app {
 namespace {
@@ -68,7 +68,7 @@ std::string fishScript(const CLI::App& app) {
 
 }  // namespace
 
-void addCompletion(CLI::App& app, Exit& exit) {
+void addCompletion(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto shell = std::make_shared<std::string>();
     auto* command = app.add_subcommand(
@@ -76,12 +76,12 @@ void addCompletion(CLI::App& app, Exit& exit) {
     command->add_option("shell", *shell, "bash, zsh or fish")
         ->required()
         ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-    command->callback([shell, &app, &exit] {
+    command->callback([shell, &app, &context] {
         const auto script = *shell == "bash"  ? bashScript(app)
                             : *shell == "zsh" ? zshScript(app)
                                               : fishScript(app);
         fmt::print("{}", script);
-        exit = Exit::success;
+        context.exit = Exit::success;
     });
 }
 

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "metier/cell/cell.hpp"
@@ -45,17 +44,6 @@ struct DashboardOptions {
     std::string meshes;
     std::string records;
 };
-
-/// The page's files: of the installed program, else of the build.
-fs::path webFolder(const std::string& chosen) {
-    std::error_code error;
-    const auto program = fs::read_symlink("/proc/self/exe", error);
-    const auto installed = program.parent_path().parent_path() / "share" / "metier" / "web";
-    if (!chosen.empty()) {
-        return chosen;
-    }
-    return !error && fs::is_directory(installed, error) ? installed : fs::path(METIER_WEB_DIR);
-}
 
 CellServer serverAt(const std::string& url) {
     constexpr std::string_view kScheme = "opc.tcp://";
@@ -128,58 +116,46 @@ dashboard::Connector connectorOf(const CommandIdentity& identity) {
         .options = [&identity](const std::string& url) -> Result<opcua::ClientOptions> {
             opcua::ClientOptions client;
             client.application_name = "metier dashboard";
-            auto secured = identity.secure(client, url);
-            return secured ? Result<opcua::ClientOptions>(std::move(client))
-                           : fail(secured.error());
+            METIER_TRY(identity.secure(client, url));
+            return client;
         },
         .advice = [&identity](const opcua::Failure& why) { return identity.adviceOn(why); },
         .connected = [&identity](const opcua::ClientOptions& client,
                                  const std::string& url) { identity.noteConnected(client, url); }};
 }
 
-Result<Exit> serve(const DashboardOptions& options, const CommandContext& context,
-                   const link::StopSignal& stop) {
+Result<Exit> runDashboard(const DashboardOptions& options, const CommandContext& context) {
+    const link::StopSignal stop;
+    link::StopSignal::outliveOutput();
+    printLabNotice(context.security);
     auto starting = std::make_unique<link::StartWatch>(stop);
-    auto cell = cellOf(options);
-    if (!cell) {
-        return reportUsage(cell.error());
-    }
-    auto records = recordsOf(options, *cell);
+    METIER_ASSIGN(auto cell, asUsage(cellOf(options)));
+    auto records = recordsOf(options, cell);
     METIER_ASSIGN(auto models, loadAllRobots());
     const SystemClock clock;
-    auto page = Dashboard::start({.cell = std::move(*cell),
-                                  .connector = connectorOf(context.identity),
-                                  .lab = context.security.insecure_lab,
-                                  .address = options.address,
-                                  .port = options.port,
-                                  .host_name = options.host_name,
-                                  .web = webFolder(options.web),
-                                  .meshes = options.meshes,
-                                  .records = std::move(records),
-                                  .models = std::move(models)},
-                                 clock);
+    auto started = Dashboard::start(
+        {.cell = std::move(cell),
+         .connector = connectorOf(context.identity),
+         .lab = context.security.insecure_lab,
+         .address = options.address,
+         .port = options.port,
+         .host_name = options.host_name,
+         .web = options.web.empty() ? sharedFolder("web", METIER_WEB_DIR) : fs::path(options.web),
+         .meshes = options.meshes,
+         .records = std::move(records),
+         .models = std::move(models)},
+        clock);
     starting.reset();
-    if (!page) {
-        return page.error().code == Errc::invalid_argument ? Result<Exit>(reportUsage(page.error()))
-                                                           : fail(page.error());
-    }
-    fmt::print("{}\n", server::readyLine(urlOf(options.address, (*page)->port())));
+    METIER_ASSIGN(const auto page, std::move(started));
+    fmt::print("{}\n", server::readyLine(urlOf(options.address, page->port())));
     std::fflush(stdout);
     if (options.discovery.empty() && !options.mdns) {
         stop.wait();
     } else {
-        watchDiscovery(**page, options, stop);
+        watchDiscovery(*page, options, stop);
     }
     link::StopSignal::endWithin(kLongestEnd);
     return Exit::success;
-}
-
-Exit runDashboard(const DashboardOptions& options, const CommandContext& context) {
-    const link::StopSignal stop;
-    link::StopSignal::outliveOutput();
-    printLabNotice(context.security);
-    const auto served = serve(options, context, stop);
-    return served ? *served : report(served.error());
 }
 
 void addHttpOptions(CLI::App& command, DashboardOptions& options) {
@@ -218,7 +194,8 @@ void addDashboard(CLI::App& app, CommandContext& context) {
                      "~/.local/state/metier]")
         ->check(withoutPassword());
     addHttpOptions(*command, *options);
-    command->callback([options, &context] { context.exit = runDashboard(*options, context); });
+    command->callback(
+        [options, &context] { context.exit = exitOf(runDashboard(*options, context)); });
 }
 
 }  // namespace metier::app

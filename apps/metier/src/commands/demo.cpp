@@ -52,26 +52,18 @@ struct DemoCell {
     int second_tries = 0;
 };
 
-/// Says what is wrong unless it runs.
-tl::expected<DemoCell, Exit> startCell(const std::string& file, const DemoOptions& options,
-                                       const server::Security& security) {
-    const auto cell = cell::loadCell(file);
-    if (!cell) {
-        return tl::unexpected(cell.error().code == Errc::invalid_argument
-                                  ? reportUsage(cell.error())
-                                  : report(cell.error()));
-    }
-    fmt::print(stderr, "the servers of the cell '{}':\n", cell->name);
-    const MetierCommands commands(*cell, options.free_ports ? Ports::free : Ports::configured,
+Result<DemoCell> startCell(const std::string& file, const DemoOptions& options,
+                           const server::Security& security) {
+    METIER_ASSIGN(const auto cell, cell::loadCell(file));
+    fmt::print(stderr, "the servers of the cell '{}':\n", cell.name);
+    const MetierCommands commands(cell, options.free_ports ? Ports::free : Ports::configured,
                                   security);
-    auto started = server::CellRunner::start(
-        *cell, commands, kNoDescriptor, [](const server::CellRunner::Running& server) {
-            fmt::print(stderr, "  {:<16} {}\n", server.name, server.url);
-        });
-    if (!started) {
-        return tl::unexpected(report(started.error()));
-    }
-    return DemoCell{std::move(*started), secondTries(*cell)};
+    METIER_ASSIGN(auto started,
+                  server::CellRunner::start(
+                      cell, commands, kNoDescriptor, [](const server::CellRunner::Running& server) {
+                          fmt::print(stderr, "  {:<16} {}\n", server.name, server.url);
+                      }));
+    return DemoCell{std::move(started), secondTries(cell)};
 }
 
 std::vector<std::string> addressesOf(const server::CellRunner& cell) {
@@ -98,41 +90,35 @@ bool tellTooSlow(Exit exit, WakeUpDelay& delay) {
 }
 
 /// Parts in a second cell.
-Exit runPickAndPlace(const DemoOptions& options, const CommandContext& context,
-                     std::optional<DemoCell>& cell, WakeUpDelay& delay) {
-    auto started = startCell(options.pick_and_place, options, context.security);
-    if (!started) {
-        return started.error();
-    }
-    cell.emplace(std::move(*started));
+Result<Exit> runPickAndPlace(const DemoOptions& options, const CommandContext& context,
+                             std::optional<DemoCell>& cell, WakeUpDelay& delay) {
+    METIER_ASSIGN(auto started, startCell(options.pick_and_place, options, context.security));
+    cell.emplace(std::move(started));
     PickPlaceSettings settings;
     settings.second_tries = cell->second_tries;
-    const auto exit = pickAndPlace(context.identity, addressesOf(cell->servers), settings);
+    const auto exit = exitOf(pickAndPlace(context.identity, addressesOf(cell->servers), settings));
     tellTooSlow(exit, delay);
     return exit;
 }
 
 /// Draws squares in the first cell, then moves parts in the second; both keep running until Enter.
-Exit runDemo(const DemoOptions& options, const CommandContext& context) {
+Result<Exit> runDemo(const DemoOptions& options, const CommandContext& context) {
     link::StopSignal::outliveOutput();
     printLabNotice(context.security);
-    auto started = startCell(options.cell, options, context.security);
-    if (!started) {
-        return started.error();
-    }
-    std::optional<DemoCell> cell(std::move(*started));
+    METIER_ASSIGN(auto started, startCell(options.cell, options, context.security));
+    std::optional<DemoCell> cell(std::move(started));
     WakeUpDelay delay;
     auto settings = options.settings;
     settings.second_tries = cell->second_tries;
-    auto exit =
-        moveAlongSquares(context.identity, addressesOf(cell->servers), settings, options.output);
+    auto exit = exitOf(
+        moveAlongSquares(context.identity, addressesOf(cell->servers), settings, options.output));
     const bool go_on = tellTooSlow(exit, delay) || exit == Exit::success;
     std::optional<DemoCell> second;
     if (go_on && !options.pick_and_place.empty()) {
         if (options.headless) {
             cell.reset();
         }
-        const auto parts = runPickAndPlace(options, context, second, delay);
+        const auto parts = exitOf(runPickAndPlace(options, context, second, delay));
         exit = exit == Exit::success ? parts : exit;
     }
     if (!options.headless) {
@@ -161,7 +147,7 @@ void addDemo(CLI::App& app, CommandContext& context) {
         "on.\n"
         "Exit status 1 if anything failed.");
     addSquareOptions(*command, options->settings, options->output);
-    command->callback([options, &context] { context.exit = runDemo(*options, context); });
+    command->callback([options, &context] { context.exit = exitOf(runDemo(*options, context)); });
 }
 
 }  // namespace metier::app

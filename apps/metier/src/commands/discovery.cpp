@@ -27,19 +27,13 @@ server::DiscoveryServer::Options serverOf(const DiscoveryOptions& options) {
     return server;
 }
 
-Exit runDiscovery(const DiscoveryOptions& options, const server::Security& security) {
+Result<Exit> runDiscovery(const DiscoveryOptions& options, const server::Security& security) {
     const link::StopSignal stop;
     const auto server_options = serverOf(options);
-    const auto identity = server::identityOf(server_options, security);
-    if (!identity) {
-        return report(identity.error());
-    }
-    const auto server = server::DiscoveryServer::start(server_options, *identity);
-    if (!server) {
-        return report(server.error());
-    }
-    warnOfLab(security, "metier discovery", (*server)->url());
-    fmt::print("{}\n", server::readyLine((*server)->url()));
+    METIER_ASSIGN(const auto identity, server::identityOf(server_options, security));
+    METIER_ASSIGN(const auto server, server::DiscoveryServer::start(server_options, identity));
+    warnOfLab(security, "metier discovery", server->url());
+    fmt::print("{}\n", server::readyLine(server->url()));
     std::fflush(stdout);
     stop.wait();
     return Exit::success;
@@ -56,13 +50,11 @@ void addDiscovery(CLI::App& app, CommandContext& context) {
         ->capture_default_str();
     command->add_option("--address", options->server.address, "Loopback address to listen on")
         ->capture_default_str();
-    command
-        ->add_option("--forget-after", options->forget_after,
-                     "Forget servers that did not renew for so long [s]")
-        ->check(CLI::Range(1U, kLongest))
-        ->capture_default_str();
+    within(command->add_option("--forget-after", options->forget_after,
+                               "Forget servers that did not renew for so long [s]"),
+           1U, kLongest);
     command->callback(
-        [options, &context] { context.exit = runDiscovery(*options, context.security); });
+        [options, &context] { context.exit = exitOf(runDiscovery(*options, context.security)); });
 }
 
 }  // namespace metier::app

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "joint_text.hpp"
 #include "robot_argument.hpp"
 
@@ -16,26 +16,17 @@ struct FkOptions {
     bool json = false;
 };
 
-Exit runFk(const FkOptions& options) {
-    const auto model = loadRobot(options.robot);
-    if (!model) {
-        return reportUsage(model.error());
-    }
-    const auto joints = parseJoints(*model, options.joints, "joint position");
-    if (!joints) {
-        return reportUsage(joints.error());
-    }
-    const auto tool = model->tool(options.tool);
-    if (!tool) {
-        return reportUsage(tool.error());
-    }
-    const auto pose = model->kinematics().forward(*joints) * tool->flange_from_tool;
-    const bool within_limits = model->kinematics().withinLimits(*joints);
+Result<Exit> runFk(const FkOptions& options) {
+    METIER_ASSIGN(const auto model, asUsage(loadRobot(options.robot)));
+    METIER_ASSIGN(const auto joints, parseJoints(model, options.joints, "joint position"));
+    METIER_ASSIGN(const auto tool, asUsage(model.tool(options.tool)));
+    const auto pose = model.kinematics().forward(joints) * tool.flange_from_tool;
+    const bool within_limits = model.kinematics().withinLimits(joints);
     if (options.json) {
-        nlohmann::ordered_json json{{"robot", model->name()},
-                                    {"joint_position", toJson(*joints)},
+        nlohmann::ordered_json json{{"robot", model.name()},
+                                    {"joint_position", toJson(joints)},
                                     {"within_limits", within_limits},
-                                    {"frame", tool->name}};
+                                    {"frame", tool.name}};
         json.update(toJson(pose));
         fmt::print("{}\n", json.dump(2));
         return Exit::success;
@@ -46,7 +37,7 @@ Exit runFk(const FkOptions& options) {
 
 }  // namespace
 
-void addFk(CLI::App& app, Exit& exit) {
+void addFk(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<FkOptions>();
     auto* command =
@@ -61,7 +52,7 @@ void addFk(CLI::App& app, Exit& exit) {
         ->required();
     command->add_option("--tool", options->tool, "A tool frame of the model instead of the flange");
     command->add_flag("--json", options->json, "Print JSON, every number with all its digits");
-    command->callback([options, &exit] { exit = runFk(*options); });
+    command->callback([options, &context] { context.exit = exitOf(runFk(*options)); });
 }
 
 }  // namespace metier::app

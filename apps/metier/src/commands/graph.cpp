@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "metier/composition/definition_file.hpp"
 #include "metier/composition/dot.hpp"
 #include "metier/link/child_process.hpp"
@@ -63,18 +63,11 @@ Result<std::string> drawn(const std::string& dot) {
     return svg;
 }
 
-Exit runGraph(const GraphOptions& options) {
-    const auto definition = composition::loadDefinition(options.file);
-    if (!definition) {
-        return reportUsage(definition.error());
-    }
-    auto text = composition::toDot(*definition);
+Result<Exit> runGraph(const GraphOptions& options) {
+    METIER_ASSIGN(const auto definition, asUsage(composition::loadDefinition(options.file)));
+    auto text = composition::toDot(definition);
     if (options.format == "svg") {
-        auto svg = drawn(text);
-        if (!svg) {
-            return report(svg.error());
-        }
-        text = std::move(*svg);
+        METIER_ASSIGN(text, drawn(text));
     }
     fmt::print("{}", text);
     return Exit::success;
@@ -82,7 +75,7 @@ Exit runGraph(const GraphOptions& options) {
 
 }  // namespace
 
-void addGraph(CLI::App& app, Exit& exit) {
+void addGraph(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<GraphOptions>();
     auto* command = app.add_subcommand(
@@ -92,7 +85,7 @@ void addGraph(CLI::App& app, Exit& exit) {
     command->add_option("--format", options->format, "dot, or svg, which needs Graphviz")
         ->check(CLI::IsMember({"dot", "svg"}))
         ->capture_default_str();
-    command->callback([options, &exit] { exit = runGraph(*options); });
+    command->callback([options, &context] { context.exit = exitOf(runGraph(*options)); });
 }
 
 }  // namespace metier::app

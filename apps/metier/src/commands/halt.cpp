@@ -55,22 +55,16 @@ public:
     Halting(const HaltOptions& options, const CommandIdentity& identity, SteadyTime deadline)
         : options_(options), identity_(identity), deadline_(deadline) {}
 
-    Exit halt(const std::string& url) {
-        const auto client = connectTo(identity_, url);
-        if (!client) {
-            return report(client.error());
-        }
-        const auto skills = client::findSkills(**client);
-        if (!skills) {
-            return report(skills.error());
-        }
-        for (const auto& skill : *skills) {
+    Result<Exit> halt(const std::string& url) {
+        METIER_ASSIGN(const auto client, connectTo(identity_, url));
+        METIER_ASSIGN(const auto skills, client::findSkills(*client));
+        for (const auto& skill : skills) {
             if (options_.skill.empty() || skill.name == options_.skill) {
-                call(**client, skill);
+                call(*client, skill);
             }
         }
         for (const auto& skill : called_) {
-            note(awaitHalted(**client, skill, options_, deadline_));
+            note(awaitHalted(*client, skill, options_, deadline_));
         }
         return exit_;
     }
@@ -98,18 +92,13 @@ private:
 };
 
 /// All servers at the same time: one that does not answer delays none.
-Exit runHalt(const HaltOptions& options, const CommandIdentity& identity) {
-    const auto urls = addressesOf(options.servers);
-    if (!urls) {
-        return reportUsage(urls.error());
-    }
-    const auto deadline =
-        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                               std::chrono::duration<double>(options.timeout));
+Result<Exit> runHalt(const HaltOptions& options, const CommandIdentity& identity) {
+    METIER_ASSIGN(const auto urls, asUsage(addressesOf(options.servers)));
+    const auto deadline = deadlineIn(options.timeout);
     std::vector<std::future<Exit>> servers;
-    for (const auto& url : *urls) {
+    for (const auto& url : urls) {
         servers.push_back(std::async(std::launch::async, [&, deadline] {
-            return Halting(options, identity, deadline).halt(url);
+            return exitOf(Halting(options, identity, deadline).halt(url));
         }));
     }
     auto exit = Exit::success;
@@ -131,12 +120,11 @@ void addHalt(CLI::App& app, CommandContext& context) {
         "emergency stop");
     addServerChoice(*command, options->servers);
     command->add_option("--skill", options->skill, "Only the skill of this name");
-    command
-        ->add_option("--timeout", options->timeout,
-                     "Wait so long for standstill, of all together [s]")
-        ->check(CLI::Range(0.1, 3'600.0))
-        ->capture_default_str();
-    command->callback([options, &context] { context.exit = runHalt(*options, context.identity); });
+    within(command->add_option("--timeout", options->timeout,
+                               "Wait so long for standstill, of all together [s]"),
+           0.1, 3'600.0);
+    command->callback(
+        [options, &context] { context.exit = exitOf(runHalt(*options, context.identity)); });
 }
 
 }  // namespace metier::app

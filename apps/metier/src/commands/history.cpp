@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "metier/link/stop_signal.hpp"
 #include "metier/records/json.hpp"
 #include "metier/records/kept_store.hpp"
@@ -44,19 +44,14 @@ Result<std::optional<UtcTime>> timeOf(const std::string& text) {
     if (text.empty()) {
         return std::optional<UtcTime>();
     }
-    const auto time = parseTime(text, std::chrono::system_clock::now());
-    return time ? Result<std::optional<UtcTime>>(*time) : fail(time.error());
+    METIER_ASSIGN(const auto time, parseTime(text, std::chrono::system_clock::now()));
+    return std::optional(time);
 }
 
 Result<records::Filter> filterOf(const HistoryOptions& options) {
     auto filter = options.filter;
-    const auto from = timeOf(options.since);
-    const auto until = timeOf(options.until);
-    if (!from || !until) {
-        return fail(from ? until.error() : from.error());
-    }
-    filter.from = *from;
-    filter.until = *until;
+    METIER_ASSIGN(filter.from, timeOf(options.since));
+    METIER_ASSIGN(filter.until, timeOf(options.until));
     return filter;
 }
 
@@ -98,23 +93,16 @@ void printHeading(const HistoryOptions& options) {
     }
 }
 
-Exit runList(const HistoryOptions& options) {
-    const auto filter = filterOf(options);
-    if (!filter) {
-        return reportUsage(filter.error());
-    }
-    const auto store = openRecords(options.records);
-    const auto listing = store ? (*store)->list(*filter, options.page)
-                               : Result<records::Listing>(fail(store.error()));
-    if (!listing) {
-        return report(listing.error());
-    }
+Result<Exit> runList(const HistoryOptions& options) {
+    METIER_ASSIGN(const auto filter, filterOf(options));
+    METIER_ASSIGN(const auto store, Store::open(options.records));
+    METIER_ASSIGN(const auto listing, store->list(filter, options.page));
     printHeading(options);
-    for (const auto& execution : listing->executions) {
+    for (const auto& execution : listing.executions) {
         printLine(execution, options);
     }
-    if (listing->more) {
-        fmt::print(stderr, "more: --before {}\n", listing->executions.back().number);
+    if (listing.more) {
+        fmt::print(stderr, "more: --before {}\n", listing.executions.back().number);
     }
     return Exit::success;
 }
@@ -145,16 +133,13 @@ private:
     }
     /// The last ones, oldest first, to begin with.
     Result<void> printLast(Store& store) {
-        const auto revision = store.latestRevision();
-        auto last = store.list(filter_, options_.page);
-        if (!revision || !last) {
-            return fail(revision ? last.error() : revision.error());
-        }
-        std::reverse(last->executions.begin(), last->executions.end());
-        for (const auto& execution : last->executions) {
+        METIER_ASSIGN(const auto revision, store.latestRevision());
+        METIER_ASSIGN(auto last, store.list(filter_, options_.page));
+        std::reverse(last.executions.begin(), last.executions.end());
+        for (const auto& execution : last.executions) {
             printLine(execution, options_);
         }
-        revision_ = *revision;
+        revision_ = revision;
         return {};
     }
 
@@ -170,14 +155,11 @@ bool isOutputClosed() {
     return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
 }
 
-Exit runFollow(const HistoryOptions& options) {
+Result<Exit> runFollow(const HistoryOptions& options) {
     const link::StopSignal signal;
-    const auto filter = filterOf(options);
-    if (!filter) {
-        return reportUsage(filter.error());
-    }
+    METIER_ASSIGN(auto filter, filterOf(options));
     printHeading(options);
-    Follower follower(options, *filter);
+    Follower follower(options, std::move(filter));
     std::string told;
     do {
         const auto looked = follower.look();
@@ -186,7 +168,7 @@ Exit runFollow(const HistoryOptions& options) {
         if (!looked && looked.error().code != Errc::not_found &&
             looked.error().code != Errc::resource_unavailable &&
             looked.error().code != Errc::timeout && looked.error().code != Errc::connection_lost) {
-            return report(looked.error());
+            return fail(looked.error());
         }
         if (problem != std::exchange(told, problem) && !problem.empty()) {
             fmt::print(stderr, "metier: {}; waiting\n", printable(problem));
@@ -243,31 +225,22 @@ void printDetails(const records::Details& details) {
     }
 }
 
-Exit runShow(const HistoryOptions& options) {
-    const auto store = openRecords(options.records);
-    const auto execution =
-        store ? (*store)->find(options.id) : Result<ExecutionRow>(fail(store.error()));
-    const auto details = execution ? records::detailsOf(**store, execution->number)
-                                   : Result<records::Details>(fail(execution.error()));
-    if (!details) {
-        return report(details.error());
-    }
+Result<Exit> runShow(const HistoryOptions& options) {
+    METIER_ASSIGN(const auto store, Store::open(options.records));
+    METIER_ASSIGN(const auto execution, store->find(options.id));
+    METIER_ASSIGN(const auto details, records::detailsOf(*store, execution.number));
     if (options.json) {
-        fmt::print("{}\n", printable(records::toJson(*details)));
+        fmt::print("{}\n", printable(records::toJson(details)));
     } else {
-        printDetails(*details);
+        printDetails(details);
     }
     return Exit::success;
 }
 
-Exit runExport(const HistoryOptions& options) {
-    const auto store = openRecords(options.records);
-    const auto count =
-        store ? (*store)->exportTo(options.file) : Result<std::uint64_t>(fail(store.error()));
-    if (!count) {
-        return report(count.error());
-    }
-    fmt::print("{} executions are in {}\n", *count, printable(options.file));
+Result<Exit> runExport(const HistoryOptions& options) {
+    METIER_ASSIGN(const auto store, Store::open(options.records));
+    METIER_ASSIGN(const auto count, store->exportTo(options.file));
+    fmt::print("{} executions are in {}\n", count, printable(options.file));
     return Exit::success;
 }
 
@@ -287,32 +260,20 @@ void addFilter(CLI::App& command, HistoryOptions& options) {
         .add_option("--before", options.page.before,
                     "The next page: what comes after the execution of this number")
         ->check(CLI::NonNegativeNumber);
-    command.add_option("--count", options.page.count, "How many")
-        ->check(CLI::Range(1, 10'000))
-        ->capture_default_str();
+    within(command.add_option("--count", options.page.count, "How many"), 1, 10'000);
 }
 
-struct TraceOptions {
-    std::string records;
-    std::string id;
-};
-
-Exit runTrace(const TraceOptions& options) {
-    const auto store = openRecords(options.records);
-    const auto execution =
-        store ? (*store)->find(options.id) : Result<ExecutionRow>(fail(store.error()));
-    const auto trace = execution ? records::chromeTrace(**store, execution->number)
-                                 : Result<std::string>(fail(execution.error()));
-    if (!trace) {
-        return report(trace.error());
-    }
-    fmt::print("{}\n", printable(*trace));
+Result<Exit> runTrace(const HistoryOptions& options) {
+    METIER_ASSIGN(const auto store, Store::open(options.records));
+    METIER_ASSIGN(const auto execution, store->find(options.id));
+    METIER_ASSIGN(const auto trace, records::chromeTrace(*store, execution.number));
+    fmt::print("{}\n", printable(trace));
     return Exit::success;
 }
 
 }  // namespace
 
-void addHistory(CLI::App& app, Exit& exit) {
+void addHistory(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callbacks, which read it.
     auto options = std::make_shared<HistoryOptions>();
     auto* command =
@@ -328,24 +289,24 @@ void addHistory(CLI::App& app, Exit& exit) {
     auto* copy = command->add_subcommand(
         "export", "Write a copy of all records into a new SQLite file, also while servers record");
     copy->add_option("FILE", options->file, "The new file")->required();
-    command->callback([options, show, copy, &exit] {
-        exit = show->parsed()    ? runShow(*options)
-               : copy->parsed()  ? runExport(*options)
-               : options->follow ? runFollow(*options)
-                                 : runList(*options);
+    command->callback([options, show, copy, &context] {
+        context.exit = exitOf(show->parsed()    ? runShow(*options)
+                              : copy->parsed()  ? runExport(*options)
+                              : options->follow ? runFollow(*options)
+                                                : runList(*options));
     });
 }
 
-void addTrace(CLI::App& app, Exit& exit) {
+void addTrace(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
-    auto options = std::make_shared<TraceOptions>();
+    auto options = std::make_shared<HistoryOptions>();
     auto* command = app.add_subcommand(
         "trace",
         "Print a recorded execution and all that it started as Chrome trace JSON, for "
         "chrome://tracing or ui.perfetto.dev");
     command->add_option("ID", options->id, "Its number or its id")->required();
     addRecords(*command, options->records);
-    command->callback([options, &exit] { exit = runTrace(*options); });
+    command->callback([options, &context] { context.exit = exitOf(runTrace(*options)); });
 }
 
 }  // namespace metier::app

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "joint_text.hpp"
 #include "metier/motion/rotation.hpp"
 #include "robot_argument.hpp"
@@ -103,12 +103,9 @@ JointVector turnedIntoLimits(const RobotModel& model, JointVector joints) {
 /// branches meet, and rounding tears them apart by the square root of its size.
 bool same(const JointVector& a, const JointVector& b) {
     constexpr double near = 1e-6;  // [rad]
-    for (std::size_t axis = 0; axis < a.size(); ++axis) {
-        if (std::abs(std::remainder(a[axis] - b[axis], 2 * std::numbers::pi)) > near) {
-            return false;
-        }
-    }
-    return true;
+    return std::equal(a.begin(), a.end(), b.begin(), [](double one, double other) {
+        return !(std::abs(std::remainder(one - other, 2 * std::numbers::pi)) > near);
+    });
 }
 
 std::vector<Solution> solve(const IkQuestion& question) {
@@ -174,29 +171,26 @@ void printTable(const IkQuestion& question, const std::vector<Solution>& solutio
     }
 }
 
-Exit runIk(const IkOptions& options) {
-    const auto question = questionOf(options);
-    if (!question) {
-        return reportUsage(question.error());
-    }
-    const auto solutions = solve(*question);
-    auto json = jsonOf(*question, solutions);
+Result<Exit> runIk(const IkOptions& options) {
+    METIER_ASSIGN(const auto question, asUsage(questionOf(options)));
+    const auto solutions = solve(question);
+    auto json = jsonOf(question, solutions);
     auto exit = Exit::success;
     if (solutions.empty()) {
-        exit = report({Errc::unreachable, whyNone(*question)});
-        json["error"] = whyNone(*question);
+        exit = report({Errc::unreachable, whyNone(question)});
+        json["error"] = whyNone(question);
     }
     if (options.json) {
         fmt::print("{}\n", json.dump(2));
     } else if (!solutions.empty()) {
-        printTable(*question, solutions);
+        printTable(question, solutions);
     }
     return exit;
 }
 
 }  // namespace
 
-void addIk(CLI::App& app, Exit& exit) {
+void addIk(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<IkOptions>();
     auto* command = app.add_subcommand(
@@ -222,7 +216,7 @@ void addIk(CLI::App& app, Exit& exit) {
                      "without it all 0 (home for a chain without closed form)")
         ->type_name("q1,q2,...");
     command->add_flag("--json", options->json, "Print JSON, every number with all its digits");
-    command->callback([options, &exit] { exit = runIk(*options); });
+    command->callback([options, &context] { context.exit = exitOf(runIk(*options)); });
 }
 
 }  // namespace metier::app

@@ -26,15 +26,12 @@ struct ListedSkill {
 
 Result<std::vector<ListedSkill>> listSkills(const CommandIdentity& identity,
                                             const std::string& url) {
-    auto client = connectTo(identity, url);
-    if (!client) {
-        return fail(client.error());
-    }
-    METIER_ASSIGN(const auto skills, client::findSkills(**client));
+    METIER_ASSIGN(const auto client, connectTo(identity, url));
+    METIER_ASSIGN(const auto skills, client::findSkills(*client));
     std::vector<ListedSkill> listed;
     for (const auto& skill : skills) {
-        const auto state = (*client)->translate(skill.node, {{0, "CurrentState"}});
-        const auto value = state ? (*client)->read(*state) : opcua::Answer<opcua::Value>();
+        const auto state = client->translate(skill.node, {{0, "CurrentState"}});
+        const auto value = state ? client->read(*state) : opcua::Answer<opcua::Value>();
         const auto text =
             value ? value->as<opcua::LocalizedText>() : Result<opcua::LocalizedText>();
         listed.push_back({skill.controllerName(), skill.name, skill.type_name,
@@ -66,14 +63,11 @@ nlohmann::json jsonOf(const std::string& url, const std::vector<ListedSkill>& sk
 
 /// Lists the skills of all servers. A server that does not answer is reported, and the others are
 /// listed all the same.
-Exit runList(const ListOptions& options, const CommandIdentity& identity) {
-    const auto urls = addressesOf(options.servers);
-    if (!urls) {
-        return reportUsage(urls.error());
-    }
+Result<Exit> runList(const ListOptions& options, const CommandIdentity& identity) {
+    METIER_ASSIGN(const auto urls, asUsage(addressesOf(options.servers)));
     auto exit = Exit::success;
     auto json = nlohmann::json::array();
-    for (const auto& url : *urls) {
+    for (const auto& url : urls) {
         const auto skills = listSkills(identity, url);
         if (!skills) {
             exit = report(skills.error());
@@ -98,7 +92,8 @@ void addList(CLI::App& app, CommandContext& context) {
     auto* command = app.add_subcommand("list", "List servers, their skills and the skills' states");
     addServerChoice(*command, options->servers);
     command->add_flag("--json", options->json, "Print JSON");
-    command->callback([options, &context] { context.exit = runList(*options, context.identity); });
+    command->callback(
+        [options, &context] { context.exit = exitOf(runList(*options, context.identity)); });
 }
 
 }  // namespace metier::app

@@ -43,29 +43,21 @@ Result<std::vector<client::SkillAddress::Above>> controllersOf(opcua::Client& cl
     return controllers;
 }
 
-Exit runOwn(const OwnOptions& options, const CommandIdentity& identity) {
+Result<Exit> runOwn(const OwnOptions& options, const CommandIdentity& identity) {
     const link::StopSignal signal;
-    auto client = connectTo(identity, options.url);
-    if (!client) {
-        return report(client.error());
-    }
-    const auto controllers = controllersOf(**client);
-    if (!controllers) {
-        return report(controllers.error());
-    }
+    METIER_ASSIGN(const auto client, connectTo(identity, options.url));
+    METIER_ASSIGN(const auto controllers, controllersOf(*client));
     const auto lease = options.owner.lease_ms == 0 ? kDefaultLease : options.owner.lease();
     std::vector<ControlHandle> controls;
-    for (const auto& controller : *controllers) {
-        auto control = ControlHandle::acquire(**client, controller.node,
-                                              {.lease = lease, .on_loss = options.owner.action()});
-        if (!control) {
-            return report(control.error());
-        }
-        fmt::print("control of {} taken, epoch {}\n", controller.name, control->epoch());
-        control->onLost([name = controller.name](const opcua::Failure& why) {
+    for (const auto& controller : controllers) {
+        METIER_ASSIGN(auto control,
+                      ControlHandle::acquire(*client, controller.node,
+                                             {.lease = lease, .on_loss = options.owner.action()}));
+        fmt::print("control of {} taken, epoch {}\n", controller.name, control.epoch());
+        control.onLost([name = controller.name](const opcua::Failure& why) {
             fmt::print(stderr, "metier: control of {} is lost: {}\n", name, why.message);
         });
-        controls.push_back(std::move(*control));
+        controls.push_back(std::move(control));
     }
     fmt::print("Ctrl-C gives it back\n");
     static_cast<void>(std::fflush(stdout));
@@ -90,7 +82,8 @@ void addOwn(CLI::App& app, CommandContext& context) {
         ->required();
     addOwnerOptions(*command, options->owner,
                     "Control is lost after so long without a heartbeat, such as 300ms [1s]");
-    command->callback([options, &context] { context.exit = runOwn(*options, context.identity); });
+    command->callback(
+        [options, &context] { context.exit = exitOf(runOwn(*options, context.identity)); });
 }
 
 }  // namespace metier::app

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "command_context.hpp"
 #include "joint_text.hpp"
 #include "motion_picture.hpp"
 #include "planned_move.hpp"
@@ -60,11 +61,8 @@ Result<DrawnMotion> motionOf(const RobotModel& model, const PlotOptions& options
     if (hasTarget(options.move)) {
         return fail(Errc::invalid_argument, "--record and a target exclude each other");
     }
-    const auto record = path_evaluation::loadRecord(options.record);
-    if (!record) {
-        return fail(Errc::invalid_argument, record.error().message);
-    }
-    return recordedMotion(model, *record, options.record, options.move.tool);
+    METIER_ASSIGN(const auto record, asUsage(path_evaluation::loadRecord(options.record)));
+    return recordedMotion(model, record, options.record, options.move.tool);
 }
 
 bool isNumber(const std::string& text) {
@@ -76,11 +74,11 @@ bool namesExecution(const PlotOptions& options) {
     if (!options.record.empty() || hasTarget(options.move) || isRobot(options.move.robot)) {
         return false;
     }
-    const auto store = openRecords(options.records);
+    const auto store = records::Store::open(options.records);
     return store ? (*store)->find(options.move.robot).has_value() : isNumber(options.move.robot);
 }
 
-Exit runPlot(const PlotOptions& options) {
+Result<Exit> runPlot(const PlotOptions& options) {
     if (namesExecution(options)) {
         return drawExecution({.records = options.records,
                               .id = options.move.robot,
@@ -89,17 +87,14 @@ Exit runPlot(const PlotOptions& options) {
                               .title = options.title,
                               .svg = options.svg});
     }
-    const auto model = loadRobot(options.move.robot);
-    if (!model) {
-        return reportUsage(model.error());
-    }
-    const auto motion = motionOf(*model, options);
-    return motion ? drawInto(options.svg, *model, options.title, *motion) : report(motion.error());
+    METIER_ASSIGN(const auto model, asUsage(loadRobot(options.move.robot)));
+    METIER_ASSIGN(const auto motion, motionOf(model, options));
+    return drawInto(options.svg, model, options.title, motion);
 }
 
 }  // namespace
 
-void addPlot(CLI::App& app, Exit& exit) {
+void addPlot(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<PlotOptions>();
     auto* command = app.add_subcommand(
@@ -125,7 +120,7 @@ void addPlot(CLI::App& app, Exit& exit) {
                         "Above the picture; without it the robot's name");
     command->add_option("--svg", options->svg, "File to draw into; -: standard output")
         ->capture_default_str();
-    command->callback([options, &exit] { exit = runPlot(*options); });
+    command->callback([options, &context] { context.exit = exitOf(runPlot(*options)); });
 }
 
 }  // namespace metier::app

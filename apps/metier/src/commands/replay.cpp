@@ -61,40 +61,25 @@ Result<skill::ValueMap> parametersOf(const records::ExecutionRow& execution,
             return fail(Errc::not_found, fmt::format("{} has no parameter '{}' any more",
                                                      skill.address().name, name));
         }
-        auto read = skill::valueFrom(value, field->type, name);
-        if (!read) {
-            return fail(Errc::invalid_argument, read.error().message);
-        }
-        values.emplace(name, std::move(*read));
+        METIER_ASSIGN(auto read, asUsage(skill::valueFrom(value, field->type, name)));
+        values.emplace(name, std::move(read));
     }
     return values;
 }
 
-Exit runAgain(const ReplayOptions& options, const CommandIdentity& identity) {
+Result<Exit> runAgain(const ReplayOptions& options, const CommandIdentity& identity) {
     const link::StopSignal signal;
-    const auto store = openRecords(options.drawing.records);
-    const auto execution = store ? (*store)->find(options.drawing.id)
-                                 : Result<records::ExecutionRow>(fail(store.error()));
-    if (!execution) {
-        return report(execution.error());
-    }
-    const auto url = addressOf(*execution, options);
-    if (!url) {
-        return reportUsage(url.error());
-    }
-    const auto& controller = execution->controller;
-    auto open = openSkill(
-        identity,
-        {*url, controller.empty() ? execution->skill : controller + "/" + execution->skill},
-        OnLoss::reconnect);
-    if (!open) {
-        return report(open.error());
-    }
-    const auto values = parametersOf(*execution, open->skill);
-    if (!values) {
-        return report(values.error());
-    }
-    const auto checked = open->skill.check(*values);
+    METIER_ASSIGN(const auto store, records::Store::open(options.drawing.records));
+    METIER_ASSIGN(const auto execution, store->find(options.drawing.id));
+    METIER_ASSIGN(const auto url, asUsage(addressOf(execution, options)));
+    const auto& controller = execution.controller;
+    METIER_ASSIGN(
+        auto open,
+        openSkill(identity,
+                  {url, controller.empty() ? execution.skill : controller + "/" + execution.skill},
+                  OnLoss::reconnect));
+    METIER_ASSIGN(const auto values, parametersOf(execution, open.skill));
+    const auto checked = open.skill.check(values);
     if (!checked) {
         return reportOutcome(checked.error());
     }
@@ -103,14 +88,14 @@ Exit runAgain(const ReplayOptions& options, const CommandIdentity& identity) {
         return Exit::failed;
     }
     fmt::print(stderr, "Check: possible, planned {:.3f} s\n", checked->planned_duration);
-    showConnection(*open->client);
-    return runSkill(signal, *open, *values, options.how);
+    showConnection(*open.client);
+    return runSkill(signal, open, values, options.how);
 }
 
-Exit runReplay(const ReplayOptions& options, const CommandIdentity& identity) {
+Result<Exit> runReplay(const ReplayOptions& options, const CommandIdentity& identity) {
     if (options.run == !options.drawing.svg.empty()) {
-        return reportUsage({Errc::invalid_argument,
-                            "say either --svg FILE, to draw it, or --run, to run it again"});
+        return fail(Errc::invalid_argument,
+                    "say either --svg FILE, to draw it, or --run, to run it again");
     }
     return options.run ? runAgain(options, identity) : drawExecution(options.drawing);
 }
@@ -136,15 +121,14 @@ void addReplay(CLI::App& app, CommandContext& context) {
     command->add_flag("--run", options->run, "Run it again");
     command->add_option("--url", options->url, "Address of its server: opc.tcp://host:port");
     command->add_option("--cell", options->cell, "Take the server of its name in this cell file");
-    command->add_option("--timeout", options->how.timeout, "Halt it after so long [s]")
-        ->check(CLI::Range(0.1, 86'400.0))
-        ->capture_default_str();
+    within(command->add_option("--timeout", options->how.timeout, "Halt it after so long [s]"), 0.1,
+           86'400.0);
     addOwnerOptions(*command, options->how.owner,
                     "Take control for the run; it is lost after so long without a heartbeat, such "
                     "as 300ms");
     command->add_flag("--json", options->how.json, "Print the result as JSON");
     command->callback(
-        [options, &context] { context.exit = runReplay(*options, context.identity); });
+        [options, &context] { context.exit = exitOf(runReplay(*options, context.identity)); });
 }
 
 }  // namespace metier::app

@@ -81,23 +81,17 @@ void showWayOut(SkillHandle& skill, const SkillChoice& choice) {
     }
 }
 
-Exit runRun(const RunOptions& options, const CommandIdentity& identity) {
+Result<Exit> runRun(const RunOptions& options, const CommandIdentity& identity) {
     const link::StopSignal signal;
-    auto open = openSkill(identity, options.choice, OnLoss::reconnect);
-    if (!open) {
-        return report(open.error());
-    }
-    auto& skill = open->skill;
-    showConnection(*open->client);
+    METIER_ASSIGN(auto open, openSkill(identity, options.choice, OnLoss::reconnect));
+    auto& skill = open.skill;
+    showConnection(*open.client);
     if (options.fields) {
         printFields(skill);
         return Exit::success;
     }
-    const auto values = parseSettings(skill, options.settings);
-    if (!values) {
-        return reportUsage(values.error());
-    }
-    const auto exit = runSkill(signal, *open, *values, options.run);
+    METIER_ASSIGN(const auto values, asUsage(parseSettings(skill, options.settings)));
+    const auto exit = runSkill(signal, open, values, options.run);
     if (exit == Exit::failed) {
         showWayOut(skill, options.choice);
     }
@@ -120,14 +114,15 @@ void addRun(CLI::App& app, CommandContext& context) {
         ->allow_extra_args(false);
     command->add_flag("--fields", options->fields,
                       "Only show the skill's parameters and results with units and ranges");
-    command->add_option("--timeout", options->run.timeout, "Halt the skill after so long [s]")
-        ->check(CLI::Range(0.1, 86'400.0))
-        ->capture_default_str();
+    within(
+        command->add_option("--timeout", options->run.timeout, "Halt the skill after so long [s]"),
+        0.1, 86'400.0);
     addOwnerOptions(*command, options->run.owner,
                     "Take control for the run; it is lost after so long without a heartbeat, such "
                     "as 300ms");
     command->add_flag("--json", options->run.json, "Print the result as JSON");
-    command->callback([options, &context] { context.exit = runRun(*options, context.identity); });
+    command->callback(
+        [options, &context] { context.exit = exitOf(runRun(*options, context.identity)); });
 }
 
 }  // namespace metier::app

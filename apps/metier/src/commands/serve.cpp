@@ -149,43 +149,32 @@ Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell, const Serv
 }
 
 /// Serves until the signal; then it brakes what moves and ends.
-Exit serveUntil(const link::StopSignal& stop, const cell::ServerConfig& config,
-                const server::Identity& identity, const ServeOptions& options) {
+Result<Exit> serveUntil(const link::StopSignal& stop, const cell::ServerConfig& config,
+                        const server::Identity& identity, const ServeOptions& options) {
     auto starting = std::make_unique<link::StartWatch>(stop);
-    const auto server = server::start(config, {identity, device::drivers(), stop});
+    auto started = server::start(config, {identity, device::drivers(), stop});
     starting.reset();
-    if (!server) {
-        return report(server.error());
-    }
+    METIER_ASSIGN(const auto server, std::move(started));
     if (!options.lab_is_known) {
-        warnOfLab(identity.security(), "metier " + options.server, (*server)->url());
+        warnOfLab(identity.security(), "metier " + options.server, server->url());
     }
-    fmt::print("{}\n", server::readyLine((*server)->url()));
+    fmt::print("{}\n", server::readyLine(server->url()));
     std::fflush(stdout);
     stop.wait();
     link::StopSignal::endWithin(kLongestEnd);
     return Exit::success;
 }
 
-Exit runServe(const ServeOptions& options, const server::Security& security) {
+Result<Exit> runServe(const ServeOptions& options, const server::Security& security) {
     const link::StopSignal stop;
     link::StopSignal::outliveOutput();
-    const auto cell = cell::loadCell(options.cell);
-    if (!cell) {
-        return reportUsage(cell.error());
+    METIER_ASSIGN(const auto cell, asUsage(cell::loadCell(options.cell)));
+    METIER_ASSIGN(auto config, asUsage(chosenServer(cell, options)));
+    METIER_ASSIGN(const auto identity, server::identityOf(config, security));
+    if (config.port == 0) {
+        config.port = options.again_at;
     }
-    auto config = chosenServer(*cell, options);
-    if (!config) {
-        return reportUsage(config.error());
-    }
-    const auto identity = server::identityOf(*config, security);
-    if (!identity) {
-        return report(identity.error());
-    }
-    if (config->port == 0) {
-        config->port = options.again_at;
-    }
-    return serveUntil(stop, *config, *identity, options);
+    return serveUntil(stop, config, identity, options);
 }
 
 }  // namespace
@@ -230,7 +219,8 @@ void addServe(CLI::App& app, CommandContext& context) {
     command->add_option("--metrics", options->metrics,
                         "Tell figures at http://ADDRESS:PORT/metrics and /healthz, instead of the "
                         "file's; PORT alone is one of 127.0.0.1; off");
-    command->callback([options, &context] { context.exit = runServe(*options, context.security); });
+    command->callback(
+        [options, &context] { context.exit = exitOf(runServe(*options, context.security)); });
 }
 
 }  // namespace metier::app

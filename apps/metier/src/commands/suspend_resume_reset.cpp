@@ -40,15 +40,10 @@ struct CommandOptions {
     double timeout = 60.0;
 };
 
-SteadyTime deadlineOf(const CommandOptions& options) {
-    return std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                                  std::chrono::duration<double>(options.timeout));
-}
-
 /// Keeps the session, whose end could be the loss of the owner, while the skill runs.
 Exit stayUntilEnd(OpenSkill& open, const CommandOptions& options) {
     std::fflush(stdout);
-    const auto ended = open.skill.awaitEnd(deadlineOf(options));
+    const auto ended = open.skill.awaitEnd(deadlineIn(options.timeout));
     if (!ended) {
         return reportOutcome(ended.error());
     }
@@ -72,7 +67,7 @@ opcua::Answer<> call(client::SkillHandle& skill, const Command& command) {
 
 /// Suspended follows at standstill, unless the skill reaches its end before, or is halted.
 Result<void> awaitSuspended(client::SkillHandle& skill, const CommandOptions& options) {
-    METIER_ASSIGN(const auto stands, skill.awaitRest(deadlineOf(options)));
+    METIER_ASSIGN(const auto stands, skill.awaitRest(deadlineIn(options.timeout)));
     if (stands == State::ready) {
         return fail(Errc::invalid_state,
                     options.choice.skill + " has reached its end: it is Ready, not Suspended");
@@ -84,24 +79,20 @@ Result<void> awaitSuspended(client::SkillHandle& skill, const CommandOptions& op
     return {};
 }
 
-Exit runCommand(const Command& command, const CommandOptions& options,
-                const CommandIdentity& identity) {
+Result<Exit> runCommand(const Command& command, const CommandOptions& options,
+                        const CommandIdentity& identity) {
     const bool stays = command.method == Method::resume;
-    auto open = openSkill(identity, options.choice, stays ? OnLoss::reconnect : OnLoss::fail);
-    if (!open) {
-        return report(open.error());
-    }
-    showConnection(*open->client);
-    if (const auto called = call(open->skill, command); !called) {
+    METIER_ASSIGN(auto open,
+                  openSkill(identity, options.choice, stays ? OnLoss::reconnect : OnLoss::fail));
+    showConnection(*open.client);
+    if (const auto called = call(open.skill, command); !called) {
         return reportOutcome(called.error());
     }
     if (command.method == Method::suspend) {
-        if (const auto suspended = awaitSuspended(open->skill, options); !suspended) {
-            return report(suspended.error());
-        }
+        METIER_TRY(awaitSuspended(open.skill, options));
     }
     fmt::print("{} {}\n", options.choice.skill, toString(command.then));
-    return stays ? stayUntilEnd(*open, options) : Exit::success;
+    return stays ? stayUntilEnd(open, options) : Exit::success;
 }
 
 }  // namespace
@@ -113,14 +104,13 @@ void addSkillCommands(CLI::App& app, CommandContext& context) {
         auto* command = app.add_subcommand(each.name, each.help);
         addSkillChoice(*command, options->choice);
         if (each.method != Method::reset) {
-            command
-                ->add_option("--timeout", options->timeout,
-                             "Wait so long for standstill, or for the end after resume [s]")
-                ->check(CLI::Range(0.1, 3'600.0))
-                ->capture_default_str();
+            within(
+                command->add_option("--timeout", options->timeout,
+                                    "Wait so long for standstill, or for the end after resume [s]"),
+                0.1, 3'600.0);
         }
         command->callback([each, options, &context] {
-            context.exit = runCommand(each, *options, context.identity);
+            context.exit = exitOf(runCommand(each, *options, context.identity));
         });
     }
 }

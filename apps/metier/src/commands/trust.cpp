@@ -127,10 +127,11 @@ Result<void> forget(Place& place, const TrustOptions& options) {
 
 using Action = Result<void> (*)(Place&, const TrustOptions&);
 
-Exit runAction(Action action, const TrustOptions& options, const server::Security& security) {
-    auto place = openPlace(security);
-    const auto done = place ? action(*place, options) : fail(place.error());
-    return done ? Exit::success : report(done.error());
+Result<Exit> runAction(Action action, const TrustOptions& options,
+                       const server::Security& security) {
+    METIER_ASSIGN(auto place, openPlace(security));
+    METIER_TRY(action(place, options));
+    return Exit::success;
 }
 
 }  // namespace
@@ -143,7 +144,7 @@ void addTrust(CLI::App& app, CommandContext& context) {
     const auto add = [&](const char* name, const char* about, Action action) {
         auto* one = command->add_subcommand(name, about);
         one->callback([options, action, &context] {
-            context.exit = runAction(action, *options, context.security);
+            context.exit = exitOf(runAction(action, *options, context.security));
         });
         return one;
     };

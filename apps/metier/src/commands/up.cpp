@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -29,12 +28,8 @@ Result<void> writeEndpoints(const std::string& file, const server::CellRunner& c
     for (const auto& [name, address] : cell.virtualControllers()) {
         controllers.push_back({{"name", name}, {"address", address}});
     }
-    std::ofstream out(file);
-    out << nlohmann::json{{"servers", servers}, {"virtual", controllers}}.dump(2) << '\n';
-    if (!out.flush()) {
-        return fail(Errc::invalid_argument, fmt::format("{}: cannot be written", file));
-    }
-    return {};
+    const nlohmann::json all{{"servers", servers}, {"virtual", controllers}};
+    return writeFile(file, all.dump(2) + "\n");
 }
 
 /// Writes a line to standard error, which may be a closed terminal.
@@ -53,30 +48,25 @@ Exit lookAfter(server::CellRunner& cell, const link::StopSignal& stop,
     return Exit::success;
 }
 
-Exit runUp(const UpOptions& options, const server::Security& security) {
+Result<Exit> runUp(const UpOptions& options, const server::Security& security) {
     const link::StopSignal stop;
     link::StopSignal::outliveOutput();
-    const auto config = cell::loadCell(options.cell);
-    if (!config) {
-        return reportUsage(config.error());
-    }
+    METIER_ASSIGN(const auto config, asUsage(cell::loadCell(options.cell)));
     printLabNotice(security);
-    const MetierCommands commands(*config, options.free_ports ? Ports::free : Ports::configured,
+    const MetierCommands commands(config, options.free_ports ? Ports::free : Ports::configured,
                                   security);
-    auto cell = server::CellRunner::start(*config, commands, stop.descriptor(),
-                                          [](const server::CellRunner::Running& server) {
-                                              fmt::print("{:<16} {}\n", server.name, server.url);
-                                              std::fflush(stdout);
-                                          });
-    if (!cell) {
-        return report(cell.error());
-    }
+    METIER_ASSIGN(auto cell,
+                  server::CellRunner::start(config, commands, stop.descriptor(),
+                                            [](const server::CellRunner::Running& server) {
+                                                fmt::print("{:<16} {}\n", server.name, server.url);
+                                                std::fflush(stdout);
+                                            }));
     if (!options.endpoints.empty()) {
-        if (const auto written = writeEndpoints(options.endpoints, *cell); !written) {
-            return reportUsage(written.error());
+        if (const auto written = writeEndpoints(options.endpoints, cell); !written) {
+            return report(written.error());  // before the servers end, which takes its time
         }
     }
-    return lookAfter(*cell, stop, options.on_failure);
+    return lookAfter(cell, stop, options.on_failure);
 }
 
 }  // namespace
@@ -99,7 +89,8 @@ void addUp(CLI::App& app, CommandContext& context) {
     command->add_flag_callback(
         "--exit-on-failure", [options] { options->on_failure = server::OnFailure::end_cell; },
         "End the whole cell when one of its processes ends by itself; exit status 1");
-    command->callback([options, &context] { context.exit = runUp(*options, context.security); });
+    command->callback(
+        [options, &context] { context.exit = exitOf(runUp(*options, context.security)); });
 }
 
 }  // namespace metier::app

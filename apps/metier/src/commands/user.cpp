@@ -5,7 +5,6 @@
 
 #include "command_context.hpp"
 #include "metier/security/users.hpp"
-#include "password.hpp"
 
 namespace metier::app {
 namespace {
@@ -34,8 +33,8 @@ Result<void> setPassword(UserTable& users, const UserOptions& options) {
     if (users.find(options.name) == nullptr) {
         return fail(Errc::not_found, fmt::format("no user '{}'", options.name));
     }
-    const auto password = readPassword(options.name);
-    return password ? users.setPassword(options.name, *password) : fail(password.error());
+    METIER_ASSIGN(const auto password, readPassword(options.name));
+    return users.setPassword(options.name, password);
 }
 
 Result<void> remove(UserTable& users, const UserOptions& options) {
@@ -44,11 +43,12 @@ Result<void> remove(UserTable& users, const UserOptions& options) {
 
 using UserAction = Result<void> (*)(UserTable&, const UserOptions&);
 
-Result<void> act(UserAction action, const UserOptions& options, const server::Security& security) {
+Result<Exit> act(Action action, const UserOptions& options, const server::Security& security) {
     METIER_ASSIGN(const auto folder, security.openFolder());
     METIER_ASSIGN(auto users, UserTable::load(folder.usersFile()));
     METIER_TRY(action(users, options));
-    return action == &listUsers ? Result<void>() : users.save(folder.usersFile());
+    METIER_TRY(action == &list ? Result<void>() : users.save(folder.usersFile()));
+    return Exit::success;
 }
 
 }  // namespace
@@ -61,8 +61,7 @@ void addUser(CLI::App& app, CommandContext& context) {
     const auto addAction = [&](const char* name, const char* about, UserAction action) {
         auto* one = command->add_subcommand(name, about);
         one->callback([options, action, &context] {
-            const auto done = act(action, *options, context.security);
-            context.exit = done ? Exit::success : report(done.error());
+            context.exit = exitOf(act(action, *options, context.security));
         });
         return one;
     };

@@ -8,7 +8,7 @@
 #include <optional>
 #include <thread>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "metier/base/text.hpp"
 #include "metier/cell/cell.hpp"
 #include "metier/link/stop_signal.hpp"
@@ -36,7 +36,9 @@ struct VirtualRunOptions {
     std::string world;
 };
 
-Result<Exit> runController(const VirtualRunOptions& options, const link::StopSignal& stop) {
+Result<Exit> runController(const VirtualRunOptions& options) {
+    const link::StopSignal stop;
+    link::StopSignal::outliveOutput();
     METIER_ASSIGN(const auto cell, cell::loadCell(options.cell));
     const auto* controller = cell.findVirtual(options.name);
     if (controller == nullptr) {
@@ -45,8 +47,7 @@ Result<Exit> runController(const VirtualRunOptions& options, const link::StopSig
     }
     std::optional<motion::RobotModel> model;
     if (!controller->model.empty()) {
-        METIER_ASSIGN(auto loaded, motion::RobotModel::load(controller->model));
-        model = std::move(loaded);
+        METIER_ASSIGN(model, motion::RobotModel::load(controller->model));
     }
     const auto* world = cell.world();
     const bool has_world = world != nullptr && world != controller;
@@ -125,35 +126,28 @@ Result<nlohmann::ordered_json> ask(const ControlOptions& options,
     return parsed;
 }
 
-Exit inject(const ControlOptions& options) {
+Result<Exit> inject(const ControlOptions& options) {
     if (options.fault.empty()) {
-        const auto help = ask(options, {{"help", true}});
-        if (!help) {
-            return report(help.error());
-        }
-        for (const auto& [name, text] : help->items()) {
+        METIER_ASSIGN(const auto help, ask(options, {{"help", true}}));
+        for (const auto& [name, text] : help.items()) {
             fmt::print("{:<24} {}\n", name, text.get<std::string>());
         }
-        return Exit::success;
+    } else {
+        METIER_TRY(ask(options, {{"inject", options.fault}, {"value", options.value}}));
     }
-    const auto done = ask(options, {{"inject", options.fault}, {"value", options.value}});
-    return done ? Exit::success : report(done.error());
-}
-
-Exit showState(const ControlOptions& options) {
-    const auto state = ask(options, {{"state", true}});
-    if (!state) {
-        return report(state.error());
-    }
-    fmt::print("{}\n", state->dump(2));
     return Exit::success;
 }
 
-Exit listTypes() {
+Result<Exit> showState(const ControlOptions& options) {
+    METIER_ASSIGN(const auto state, ask(options, {{"state", true}}));
+    fmt::print("{}\n", state.dump(2));
+    return Exit::success;
+}
+
+void listTypes() {
     for (const auto& type : virtual_controller::controllerTypes()) {
         fmt::print("{:<10} {}\n", type.name, type.help);
     }
-    return Exit::success;
 }
 
 void addTarget(CLI::App& command, ControlOptions& options) {
@@ -166,7 +160,7 @@ void addTarget(CLI::App& command, ControlOptions& options) {
 
 }  // namespace
 
-void addVirtual(CLI::App& app, Exit& exit) {
+void addVirtual(CLI::App& app, CommandContext& context) {
     auto* command =
         app.add_subcommand("virtual", "Controllers without their devices: run them, break them");
     command->require_subcommand(1);
@@ -179,12 +173,7 @@ void addVirtual(CLI::App& app, Exit& exit) {
     run_command->add_option("name", run->name, "Its name in the file")->required();
     run_command->add_option("--address", run->address, "Another address than the file's");
     run_command->add_option("--world", run->world, "Address of the world, if not the file's");
-    run_command->callback([run, &exit] {
-        const link::StopSignal stop;
-        link::StopSignal::outliveOutput();
-        const auto ended = runController(*run, stop);
-        exit = ended ? *ended : report(ended.error());
-    });
+    run_command->callback([run, &context] { context.exit = exitOf(runController(*run)); });
 
     auto control = std::make_shared<ControlOptions>();
     auto* inject_command = command->add_subcommand(
@@ -192,14 +181,14 @@ void addVirtual(CLI::App& app, Exit& exit) {
     addTarget(*inject_command, *control);
     inject_command->add_option("fault", control->fault, "What happens, as emergency-stop");
     inject_command->add_option("value", control->value, "Its argument, if it has one");
-    inject_command->callback([control, &exit] { exit = inject(*control); });
+    inject_command->callback([control, &context] { context.exit = exitOf(inject(*control)); });
 
     auto* state_command = command->add_subcommand("state", "Show a virtual controller as JSON");
     addTarget(*state_command, *control);
-    state_command->callback([control, &exit] { exit = showState(*control); });
+    state_command->callback([control, &context] { context.exit = exitOf(showState(*control)); });
 
     auto* list_command = command->add_subcommand("list", "The types of virtual controllers");
-    list_command->callback([&exit] { exit = listTypes(); });
+    list_command->callback(&listTypes);
 }
 
 }  // namespace metier::app

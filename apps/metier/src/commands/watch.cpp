@@ -140,23 +140,15 @@ void lookAgain(std::vector<SkillHandle>& handles) {
     }
 }
 
-Exit runWatch(const WatchOptions& options, const CommandIdentity& identity) {
+Result<Exit> runWatch(const WatchOptions& options, const CommandIdentity& identity) {
     const link::StopSignal signal;
     Printer printer(options);
-    auto client = connectTo(identity, options.url, OnLoss::reconnect);
-    if (!client) {
-        return report(client.error());
-    }
-    (*client)->onConnectionChange(
+    METIER_ASSIGN(const auto client, connectTo(identity, options.url, OnLoss::reconnect));
+    client->onConnectionChange(
         [&printer](const opcua::ConnectionChange& change) { printer.add(change); });
-    auto handles = openAll(**client, options, printer);
-    if (!handles) {
-        return report(handles.error());
-    }
-    fmt::print(stderr, "watching {} skills; Ctrl-C ends it\n", handles->size());
-    const auto exit = printer.wait(signal, [&handles] { lookAgain(*handles); });
-    handles->clear();
-    return exit;
+    METIER_ASSIGN(auto handles, openAll(*client, options, printer));
+    fmt::print(stderr, "watching {} skills; Ctrl-C ends it\n", handles.size());
+    return printer.wait(signal, [&handles] { lookAgain(handles); });
 }
 
 }  // namespace
@@ -173,7 +165,8 @@ void addWatch(CLI::App& app, CommandContext& context) {
     command->add_option("--count", options->count, "End after so many transitions; 0: at Ctrl-C")
         ->check(CLI::NonNegativeNumber);
     command->add_flag("--json", options->json, "Print one JSON object per line");
-    command->callback([options, &context] { context.exit = runWatch(*options, context.identity); });
+    command->callback(
+        [options, &context] { context.exit = exitOf(runWatch(*options, context.identity)); });
 }
 
 }  // namespace metier::app
