@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 #include "metier/base/text.hpp"
 #include "metier/server/user_folders.hpp"
 #include "robot_argument.hpp"

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <memory>
 #include <string>
-#include <vector>
 
 #include "commands.hpp"
 #include "metier/base/error.hpp"

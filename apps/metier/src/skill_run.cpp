@@ -11,7 +11,6 @@
 #include "metier/client/control_handle.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "metier/skill/json.hpp"
-#include "metier/skill/values.hpp"
 #include "printable.hpp"
 
 namespace metier::app {

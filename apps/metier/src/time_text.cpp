@@ -6,9 +6,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 #include <optional>
-#include <string>
 
 namespace metier::app {
 namespace {

@@ -1,12 +1,10 @@
 #include "access.hpp"
 
 #include <arpa/inet.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <string_view>
 
 #include "metier/base/text.hpp"
 

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <future>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <thread>
 #include <utility>
 

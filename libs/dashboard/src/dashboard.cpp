@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <stop_token>
-#include <thread>
 #include <utility>
 
 #include "access.hpp"

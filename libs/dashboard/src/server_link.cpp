@@ -1,7 +1,6 @@
 #include "server_link.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "metier/opcua/text.hpp"

@@ -5,10 +5,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <memory>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include "connection.hpp"
 #include "metier/base/text.hpp"

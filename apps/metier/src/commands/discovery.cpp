@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
-#include <string>
 
 #include "metier/link/stop_signal.hpp"
 #include "metier/server/discovery_server.hpp"

@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "command_context.hpp"
 #include "metier/link/stop_signal.hpp"

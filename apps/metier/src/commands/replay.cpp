@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "metier/cell/cell.hpp"
 #include "metier/skill/values.hpp"

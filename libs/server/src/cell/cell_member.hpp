@@ -3,7 +3,6 @@
 #include <chrono>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"

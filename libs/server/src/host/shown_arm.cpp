@@ -1,7 +1,6 @@
 #include "host/shown_arm.hpp"
 
 #include <chrono>
-#include <utility>
 #include <vector>
 
 #include "metier/base/recent_mean.hpp"

@@ -1,7 +1,5 @@
 #include "kinds/composition_files.hpp"
 
-#include <fmt/format.h>
-
 #include <utility>
 
 #include "metier/base/random.hpp"
