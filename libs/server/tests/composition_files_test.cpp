@@ -1,4 +1,4 @@
-#include "kinds/composition_files.hpp"
+#include "kinds/compositions.hpp"
 
 #include <gmock/gmock.h>
 

@@ -7,8 +7,8 @@
 
 #include "host/device_opening.hpp"
 #include "host/skill_host.hpp"
+#include "kinds/compositions.hpp"
 #include "kinds/kinds.hpp"
-#include "kinds/own_compositions.hpp"
 #include "metier/motion/frame.hpp"
 #include "metier/robot_skills/gripper_skills.hpp"
 

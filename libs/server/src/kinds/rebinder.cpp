@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "kinds/own_compositions.hpp"
+#include "kinds/compositions.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 
 namespace metier::server {

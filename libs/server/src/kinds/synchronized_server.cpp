@@ -4,7 +4,7 @@
 
 #include "finding/skill_matching.hpp"
 #include "host/skill_host.hpp"
-#include "kinds/composition_files.hpp"
+#include "kinds/compositions.hpp"
 #include "kinds/kinds.hpp"
 #include "metier/client/remote_server.hpp"
 #include "metier/composition/synchronized_move_skill.hpp"

@@ -6,12 +6,23 @@
 #include <string>
 #include <vector>
 
-#include "host/skill_host.hpp"
 #include "metier/base/error.hpp"
+#include "metier/composition/definition.hpp"
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua/node_id.hpp"
+#include "metier/skill/program.hpp"
 
 namespace metier::server {
+
+class SkillHost;
+
+/// All files, each after those that it uses.
+/// Errors: everything that is wrong with any of them.
+Result<std::vector<composition::Definition>> loadDefinitions(
+    const std::vector<std::filesystem::path>& files);
+
+/// Tells the executions of this life of a server from those before.
+std::string newLife();
 
 using UsedSkills = std::map<std::string, std::unique_ptr<composition::UsedSkill>>;  ///< by alias
 

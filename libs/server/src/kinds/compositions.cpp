@@ -1,4 +1,4 @@
-#include "kinds/own_compositions.hpp"
+#include "kinds/compositions.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "finding/skill_matching.hpp"
-#include "kinds/composition_files.hpp"
+#include "host/skill_host.hpp"
+#include "metier/base/random.hpp"
 #include "metier/composition/composition.hpp"
+#include "metier/composition/definition_file.hpp"
 #include "metier/composition/local_used_skill.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 
@@ -98,6 +100,29 @@ Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, const Defini
 }
 
 }  // namespace
+
+Result<std::vector<composition::Definition>> loadDefinitions(
+    const std::vector<std::filesystem::path>& files) {
+    std::vector<composition::Definition> definitions;
+    std::string problems;
+    for (const auto& file : files) {
+        auto definition = composition::loadDefinition(file);
+        if (definition) {
+            definitions.push_back(std::move(*definition));
+        } else {
+            problems += (problems.empty() ? "" : "\n") + definition.error().message;
+        }
+    }
+    if (!problems.empty()) {
+        return fail(Errc::invalid_argument, std::move(problems));
+    }
+    return composition::inOrderOfUse(std::move(definitions));
+}
+
+std::string newLife() {
+    constexpr std::size_t kDigits = 6;
+    return randomHex(kDigits);
+}
 
 std::unique_ptr<composition::UsedSkill> usedOf(SkillHost& host, skill::Program& program,
                                                const std::string& composed) {
