@@ -75,14 +75,9 @@ Value speedl(Call& call) {
     return call.moves(speed);
 }
 
-Value stopj(Call& call) {
-    StopJ stop;
-    stop.acceleration = call.number(0, stop.acceleration);
-    return call.moves(stop);
-}
-
-Value stopl(Call& call) {
-    StopL stop;
+template <typename T>
+Value stop(Call& call) {
+    T stop;
     stop.acceleration = call.number(0, stop.acceleration);
     return call.moves(stop);
 }
@@ -120,8 +115,8 @@ std::span<const Builtin> motionBuiltins() {
         {"servoj", "q a v t lookahead_time gain", 1, servoj},
         {"speedj", "qd a t", 1, speedj},
         {"speedl", "xd a t aRot", 1, speedl},
-        {"stopj", "a", 0, stopj},
-        {"stopl", "a aRot", 0, stopl},
+        {"stopj", "a", 0, stop<StopJ>},
+        {"stopl", "a aRot", 0, stop<StopL>},
     };
     return kAll;
 }

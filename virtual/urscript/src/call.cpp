@@ -59,12 +59,17 @@ bool Call::boolean(std::size_t index, bool otherwise) {
     return given(index) ? boolean(index) : otherwise;
 }
 
-std::string Call::string(std::size_t index) {
-    if (const auto* text = arguments_[index].get<std::string>()) {
-        return *text;
+template <typename T>
+T Call::as(std::size_t index, std::string_view wanted) {
+    if (const T* value = arguments_[index].get<T>()) {
+        return *value;
     }
-    wrongType(index, "a string");
+    wrongType(index, wanted);
     return {};
+}
+
+std::string Call::string(std::size_t index) {
+    return as<std::string>(index, "a string");
 }
 
 std::string Call::string(std::size_t index, std::string_view otherwise) {
@@ -72,19 +77,11 @@ std::string Call::string(std::size_t index, std::string_view otherwise) {
 }
 
 List Call::list(std::size_t index) {
-    if (const List* list = arguments_[index].get<List>()) {
-        return *list;
-    }
-    wrongType(index, "a list");
-    return {};
+    return as<List>(index, "a list");
 }
 
 Pose Call::pose(std::size_t index) {
-    if (const Pose* pose = arguments_[index].get<Pose>()) {
-        return *pose;
-    }
-    wrongType(index, "a pose");
-    return {};
+    return as<Pose>(index, "a pose");
 }
 
 template <std::size_t n>

@@ -84,6 +84,8 @@ public:
     Wait takeWait() { return std::move(wait_); }
 
 private:
+    template <typename T>
+    T as(std::size_t index, std::string_view wanted);
     template <std::size_t n>
     std::array<double, n> numbers(std::size_t index);
     Value wrongType(std::size_t index, std::string_view wanted);

@@ -103,11 +103,7 @@ void CodeBuilder::constant(Value value, Position at) {
 }
 
 void CodeBuilder::load(std::string_view name, Position at) {
-    if (const std::int32_t own = local(name); own >= 0) {
-        emit(Op::load_local, at, own);
-    } else {
-        emit(Op::load_global, at, static_cast<std::int32_t>(global(name, at).index));
-    }
+    access(name, {Op::load_local, Op::load_global}, at);
 }
 
 void CodeBuilder::store(std::string_view name, Position at) {
@@ -116,18 +112,18 @@ void CodeBuilder::store(std::string_view name, Position at) {
     } else if (local(name) < 0 && !isGlobal(name)) {
         declareLocal(name);
     }
-    if (const std::int32_t own = local(name); own >= 0) {
-        emit(Op::store_local, at, own);
-    } else {
-        emit(Op::store_global, at, static_cast<std::int32_t>(global(name, at).index));
-    }
+    access(name, {Op::store_local, Op::store_global}, at);
 }
 
 void CodeBuilder::storeElement(std::string_view name, std::size_t n, Position at) {
+    access(name, {Op::set_local_element, Op::set_global_element}, at, n);
+}
+
+void CodeBuilder::access(std::string_view name, Access ops, Position at, std::size_t n) {
     if (const std::int32_t own = local(name); own >= 0) {
-        emit(Op::set_local_element, at, own, n);
+        emit(ops.local, at, own, n);
     } else {
-        emit(Op::set_global_element, at, static_cast<std::int32_t>(global(name, at).index), n);
+        emit(ops.global, at, static_cast<std::int32_t>(global(name, at).index), n);
     }
 }
 

@@ -74,6 +74,13 @@ private:
         bool is_run = false;
     };
 
+    /// The instructions for a variable of the function and for one of the program.
+    struct Access {
+        Op local;
+        Op global;
+    };
+
+    void access(std::string_view name, Access ops, Position at, std::size_t n = 0);
     Global& global(std::string_view name, Position at);
     /// Whether it is declared by now; what was only read may become global further down.
     bool isGlobal(std::string_view name) const;

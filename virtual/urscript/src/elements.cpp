@@ -38,12 +38,9 @@ Result<Value> oneElementOf(const Value& value, const Value& index) {
 }  // namespace
 
 Result<Value> elementOf(const Value& value, std::span<const Value> indices) {
-    Result<Value> element(value);
+    Value element = value;
     for (const Value& index : indices) {
-        element = oneElementOf(*element, index);
-        if (!element) {
-            break;
-        }
+        METIER_ASSIGN(element, oneElementOf(element, index));
     }
     return element;
 }

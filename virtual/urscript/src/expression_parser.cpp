@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "parser.hpp"
@@ -13,98 +14,56 @@ constexpr std::size_t kMostElements = 1000;
 constexpr std::size_t kMostArguments = 64;
 constexpr std::size_t kPoseElements = 6;
 
-// The operation of a token on each level; Op::pop if it has none there.
-Op xorOf(Kind kind) {
-    return kind == Kind::word_xor ? Op::logical_xor : Op::pop;
-}
-
-Op comparisonOf(Kind kind) {
-    switch (kind) {
-        case Kind::equal:
-            return Op::equal;
-        case Kind::not_equal:
-            return Op::not_equal;
-        case Kind::less:
-            return Op::less;
-        case Kind::less_equal:
-            return Op::less_equal;
-        case Kind::greater:
-            return Op::greater;
-        case Kind::greater_equal:
-            return Op::greater_equal;
-        default:
-            return Op::pop;
-    }
-}
-
-Op sumOf(Kind kind) {
-    switch (kind) {
-        case Kind::plus:
-            return Op::add;
-        case Kind::minus:
-            return Op::subtract;
-        default:
-            return Op::pop;
-    }
-}
-
-Op productOf(Kind kind) {
-    switch (kind) {
-        case Kind::star:
-            return Op::multiply;
-        case Kind::slash:
-            return Op::divide;
-        case Kind::percent:
-            return Op::remainder;
-        default:
-            return Op::pop;
-    }
+/// nullptr if a token is no operator of that precedence.
+const BinaryOperator* operatorOf(Kind kind, Precedence precedence) {
+    const auto* const known = std::ranges::find(kBinaryOperators, kind, &BinaryOperator::token);
+    return known != kBinaryOperators.end() && known->precedence == precedence ? known : nullptr;
 }
 
 }  // namespace
 
 Result<void> Parser::expression() {
-    return leftToRight(&Parser::orExpression, xorOf);
+    return leftToRight(&Parser::orExpression, Precedence::exclusive_or);
 }
 
-Result<void> Parser::leftToRight(Step operand, Op (*operation)(Kind)) {
-    auto done = (this->*operand)();
-    while (done && operation(peek().kind) != Op::pop) {
-        const Token& token = take();
-        done = (this->*operand)();
-        builder_.emit(operation(token.kind), token.at);
+Result<void> Parser::leftToRight(Step operand, Precedence precedence) {
+    METIER_TRY((this->*operand)());
+    while (const auto* const known = operatorOf(peek().kind, precedence)) {
+        const Position at = take().at;
+        METIER_TRY((this->*operand)());
+        builder_.emit(known->op, at);
     }
-    return done;
+    return {};
 }
 
 Result<void> Parser::orExpression() {
-    auto done = andExpression();
-    while (done && peek().kind == Kind::word_or) {
+    METIER_TRY(andExpression());
+    while (peek().kind == Kind::word_or) {
         const Position at = take().at;
         const std::size_t otherwise = builder_.emit(Op::jump_if_false, at);
         builder_.constant(true, at);
         const std::size_t end = builder_.emit(Op::jump, at);
         builder_.patch(otherwise);
-        done = andExpression();
+        METIER_TRY(andExpression());
         builder_.emit(Op::truth, at);
         builder_.patch(end);
     }
-    return done;
+    return {};
 }
 
 Result<void> Parser::andExpression() {
-    auto done = notExpression();
-    while (done && peek().kind == Kind::word_and) {
+    METIER_TRY(notExpression());
+    while (peek().kind == Kind::word_and) {
         const Position at = take().at;
         const std::size_t otherwise = builder_.emit(Op::jump_if_false, at);
-        done = notExpression();
+        METIER_TRY(notExpression());
         builder_.emit(Op::truth, at);
         const std::size_t end = builder_.emit(Op::jump, at);
         builder_.patch(otherwise);
         builder_.constant(false, at);
         builder_.patch(end);
     }
-    return done;
+    return {};
 }
 
 Result<void> Parser::notExpression() {
@@ -116,13 +75,13 @@ Result<void> Parser::notExpression() {
 }
 
 Result<void> Parser::comparison() {
-    return leftToRight(&Parser::sum, comparisonOf);
+    return leftToRight(&Parser::sum, Precedence::comparison);
 }
 Result<void> Parser::sum() {
-    return leftToRight(&Parser::product, sumOf);
+    return leftToRight(&Parser::product, Precedence::sum);
 }
 Result<void> Parser::product() {
-    return leftToRight(&Parser::sign, productOf);
+    return leftToRight(&Parser::sign, Precedence::product);
 }
 
 Result<void> Parser::sign() {
@@ -135,8 +94,8 @@ Result<void> Parser::sign() {
 
 /// A value and the indices behind it.
 Result<void> Parser::primary() {
-    auto done = value();
-    while (done && peek().kind == Kind::left_bracket) {
+    METIER_TRY(value());
+    while (peek().kind == Kind::left_bracket) {
         const Position at = take().at;
         METIER_ASSIGN(const auto indices, expressions(Kind::right_bracket, 2));
         if (indices == 0) {
@@ -144,7 +103,7 @@ Result<void> Parser::primary() {
         }
         builder_.emit(Op::element, at, 0, indices);
     }
-    return done;
+    return {};
 }
 
 Result<void> Parser::value() {
@@ -194,17 +153,13 @@ Result<void> Parser::name() {
 
 Result<void> Parser::call(const Token& name) {
     std::vector<WrittenArgument> arguments;
-    auto done = expect(Kind::left_paren, "'=' or '('");
-    while (done && !takeIf(Kind::right_paren)) {
-        done = argument(arguments);
-        if (done && peek().kind != Kind::right_paren) {
-            done = expect(Kind::comma, "',' or ')'");
-        }
+    METIER_TRY(expect(Kind::left_paren, "'=' or '('"));
+    while (!takeIf(Kind::right_paren)) {
+        METIER_TRY(argument(arguments));
+        METIER_TRY(separator(Kind::right_paren));
     }
-    if (done) {
-        builder_.call(name.text, std::move(arguments), name.at);
-    }
-    return done;
+    builder_.call(name.text, std::move(arguments), name.at);
+    return {};
 }
 
 Result<void> Parser::argument(std::vector<WrittenArgument>& arguments) {
@@ -266,14 +221,11 @@ Result<void> Parser::list() {
 Result<void> Parser::runThread() {
     const Position at = take().at;
     const Token& name = peek();
-    auto done = expect(Kind::name, "a thread's name");
-    if (done) {
-        done = expect(Kind::left_paren, "'('");
-    }
-    if (done) {
-        done = expect(Kind::right_paren, "')'");
-    }
-    return done.map([&] { builder_.run(name.text, at); });
+    METIER_TRY(expect(Kind::name, "a thread's name"));
+    METIER_TRY(expect(Kind::left_paren, "'('"));
+    METIER_TRY(expect(Kind::right_paren, "')'"));
+    builder_.run(name.text, at);
+    return {};
 }
 
 Result<std::size_t> Parser::expressions(Kind end, std::size_t most) {
@@ -282,16 +234,18 @@ Result<std::size_t> Parser::expressions(Kind end, std::size_t most) {
         if (count == most) {
             return failAt(peek().at, fmt::format("more than {} values", most));
         }
-        auto done = nested(&Parser::expression);
+        METIER_TRY(nested(&Parser::expression));
         ++count;
-        if (done && peek().kind != end) {
-            done = expect(Kind::comma, end == Kind::right_bracket ? "',' or ']'" : "',' or ')'");
-        }
-        if (!done) {
-            return fail(std::move(done.error()));
-        }
+        METIER_TRY(separator(end));
     }
     return count;
+}
+
+Result<void> Parser::separator(Kind end) {
+    if (peek().kind == end) {
+        return {};
+    }
+    return expect(Kind::comma, end == Kind::right_bracket ? "',' or ']'" : "',' or ')'");
 }
 
 }  // namespace metier::urscript

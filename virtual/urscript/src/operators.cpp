@@ -17,32 +17,7 @@ bool isComparison(Op op) {
 }
 
 std::string_view symbolOf(Op op) {
-    switch (op) {
-        case Op::add:
-            return "+";
-        case Op::subtract:
-            return "-";
-        case Op::multiply:
-            return "*";
-        case Op::divide:
-            return "/";
-        case Op::remainder:
-            return "%";
-        case Op::equal:
-            return "==";
-        case Op::not_equal:
-            return "!=";
-        case Op::less:
-            return "<";
-        case Op::less_equal:
-            return "<=";
-        case Op::greater:
-            return ">";
-        case Op::greater_equal:
-            return ">=";
-        default:
-            return "xor";
-    }
+    return std::ranges::find(kBinaryOperators, op, &BinaryOperator::op)->symbol;
 }
 
 tl::unexpected<Error> mismatch(Op op, const Value& left, const Value& right) {
@@ -56,6 +31,9 @@ Value wrapped(std::int64_t value) {
 }
 
 Result<Value> ofIntegers(Op op, std::int64_t left, std::int64_t right) {
+    if (right == 0 && (op == Op::divide || op == Op::remainder)) {
+        return fail(Errc::invalid_argument, "division by zero");
+    }
     switch (op) {
         case Op::add:
             return wrapped(left + right);
@@ -64,14 +42,8 @@ Result<Value> ofIntegers(Op op, std::int64_t left, std::int64_t right) {
         case Op::multiply:
             return wrapped(left * right);
         case Op::remainder:
-            if (right == 0) {
-                return fail(Errc::invalid_argument, "division by zero");
-            }
             return wrapped(left % right);
         default:
-            if (right == 0) {
-                return fail(Errc::invalid_argument, "division by zero");
-            }
             return Value(static_cast<double>(left) / static_cast<double>(right));
     }
 }
@@ -181,14 +153,11 @@ Result<Value> rowTimesMatrix(const List& row, const List& matrix) {
     const std::size_t columns = matrix.elements()[0].get<List>()->size();
     std::vector<Value> result;
     for (std::size_t j = 0; j < columns; ++j) {
-        auto element = dotProduct(row, matrix.size(), [&](std::size_t i) {
-            const List& matrix_row = *matrix.elements()[i].get<List>();
-            return j < matrix_row.size() ? matrix_row.elements()[j] : Value();
-        });
-        if (!element) {
-            return element;
-        }
-        result.push_back(*std::move(element));
+        METIER_ASSIGN(auto element, dotProduct(row, matrix.size(), [&](std::size_t i) {
+                          const List& matrix_row = *matrix.elements()[i].get<List>();
+                          return j < matrix_row.size() ? matrix_row.elements()[j] : Value();
+                      }));
+        result.push_back(std::move(element));
     }
     return Value(List(std::move(result)));
 }
@@ -201,14 +170,12 @@ Result<Value> matrixProduct(const List& left, const List& right) {
     std::vector<Value> rows;
     for (const Value& row : left.elements()) {
         const List& elements = *row.get<List>();
-        auto product = isMatrix(right) ? rowTimesMatrix(elements, right)
-                                       : dotProduct(elements, right.size(), [&](std::size_t i) {
-                                             return right.elements()[i];
-                                         });
-        if (!product) {
-            return product;
-        }
-        rows.push_back(*std::move(product));
+        METIER_ASSIGN(auto product, isMatrix(right)
+                                        ? rowTimesMatrix(elements, right)
+                                        : dotProduct(elements, right.size(), [&](std::size_t i) {
+                                              return right.elements()[i];
+                                          }));
+        rows.push_back(std::move(product));
     }
     return Value(List(std::move(rows)));
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <span>
+#include <string_view>
 
 #include "code.hpp"
 #include "metier/base/error.hpp"
@@ -11,7 +13,32 @@ namespace metier::urscript {
 // Operators on values. Errors: type_mismatch, out_of_range, invalid_argument; without position.
 // Pure. Source: script manual, "Matrix and Array Expressions".
 
-/// \param op one of Op::add to Op::logical_xor
+enum class Precedence : std::uint8_t { exclusive_or, comparison, sum, product };
+
+/// An operator between two values; those of one precedence are applied from left to right.
+struct BinaryOperator {
+    Op op;
+    TokenKind token;
+    std::string_view symbol;
+    Precedence precedence;
+};
+
+inline constexpr std::array kBinaryOperators{
+    BinaryOperator{Op::logical_xor, TokenKind::word_xor, "xor", Precedence::exclusive_or},
+    BinaryOperator{Op::equal, TokenKind::equal, "==", Precedence::comparison},
+    BinaryOperator{Op::not_equal, TokenKind::not_equal, "!=", Precedence::comparison},
+    BinaryOperator{Op::less, TokenKind::less, "<", Precedence::comparison},
+    BinaryOperator{Op::less_equal, TokenKind::less_equal, "<=", Precedence::comparison},
+    BinaryOperator{Op::greater, TokenKind::greater, ">", Precedence::comparison},
+    BinaryOperator{Op::greater_equal, TokenKind::greater_equal, ">=", Precedence::comparison},
+    BinaryOperator{Op::add, TokenKind::plus, "+", Precedence::sum},
+    BinaryOperator{Op::subtract, TokenKind::minus, "-", Precedence::sum},
+    BinaryOperator{Op::multiply, TokenKind::star, "*", Precedence::product},
+    BinaryOperator{Op::divide, TokenKind::slash, "/", Precedence::product},
+    BinaryOperator{Op::remainder, TokenKind::percent, "%", Precedence::product},
+};
+
+/// \param op one of kBinaryOperators
 Result<Value> applyBinary(Op op, const Value& left, const Value& right);
 Result<Value> negated(const Value& value);
 /// Truth of a value: a bool itself; numbers are true if not 0, strings if not empty.

@@ -44,26 +44,19 @@ Result<Code> Parser::program() {
             METIER_TRY(expect(kind, what));
         }
     }
-    auto done = block();
+    METIER_TRY(block());
     const Position end = peek().at;
-    if (done && defined) {
-        done = expect(Kind::word_end, "'end' of the program");
+    if (defined) {
+        METIER_TRY(expect(Kind::word_end, "'end' of the program"));
     }
-    while (done && (takeIf(Kind::new_line) || takeIf(Kind::semicolon))) {
-    }
-    if (done) {
-        done = expect(Kind::end_of_text, "the end of the text");
-    }
-    if (!done) {
-        return fail(std::move(done.error()));
-    }
+    takeLineEnds();
+    METIER_TRY(expect(Kind::end_of_text, "the end of the text"));
     return builder_.finish(end);
 }
 
 Result<void> Parser::block() {
     while (true) {
-        while (takeIf(Kind::new_line) || takeIf(Kind::semicolon)) {
-        }
+        takeLineEnds();
         if (endsBlock(peek().kind)) {
             return {};
         }
@@ -129,38 +122,23 @@ Result<void> Parser::simpleStatement() {
 Result<void> Parser::definition(bool is_thread) {
     const Position at = take().at;
     const Token& name = peek();
-    auto done = expect(Kind::name, is_thread ? "the thread's name" : "the function's name");
-    if (done) {
-        done = builder_.beginFunction(name.text, is_thread, at);
-    }
-    if (done) {
-        done = parameters();
-    }
+    METIER_TRY(expect(Kind::name, is_thread ? "the thread's name" : "the function's name"));
+    METIER_TRY(builder_.beginFunction(name.text, is_thread, at));
+    METIER_TRY(parameters());
     auto outer_loops = std::exchange(loops_, {});
-    if (done) {
-        done = block();
-    }
+    METIER_TRY(block());
     loops_ = std::move(outer_loops);
-    if (done) {
-        builder_.endFunction(peek().at);
-        done = expect(Kind::word_end, fmt::format("'end' of '{}'", name.text));
-    }
-    return done;
+    builder_.endFunction(peek().at);
+    return expect(Kind::word_end, fmt::format("'end' of '{}'", name.text));
 }
 
 Result<void> Parser::parameters() {
-    auto done = expect(Kind::left_paren, "'('");
-    while (done && peek().kind != Kind::right_paren) {
-        done = parameter();
-        if (done && peek().kind != Kind::right_paren) {
-            done = expect(Kind::comma, "',' or ')'");
-        }
+    METIER_TRY(expect(Kind::left_paren, "'('"));
+    while (!takeIf(Kind::right_paren)) {
+        METIER_TRY(parameter());
+        METIER_TRY(separator(Kind::right_paren));
     }
-    if (done) {
-        take();
-        done = expect(Kind::colon, "':'");
-    }
-    return done;
+    return expect(Kind::colon, "':'");
 }
 
 Result<void> Parser::parameter() {
@@ -173,21 +151,17 @@ Result<void> Parser::parameter() {
     if (index == kMostParameters) {
         return failAt(name.at, fmt::format("more than {} parameters", kMostParameters));
     }
-    auto done = expect(Kind::name, "a parameter's name");
-    if (done) {
-        done = builder_.addParameter(name.text, name.at);
-    }
-    if (!done || !takeIf(Kind::assign)) {
+    METIER_TRY(expect(Kind::name, "a parameter's name"));
+    METIER_TRY(builder_.addParameter(name.text, name.at));
+    if (!takeIf(Kind::assign)) {
         function.required = index + 1;
-        return done;
+        return {};
     }
     const std::size_t given = builder_.emit(Op::jump_if_given, name.at, 0, index);
-    done = nested(&Parser::expression);
-    if (done) {
-        builder_.store(name.text, name.at);
-        builder_.patch(given);
-    }
-    return done;
+    METIER_TRY(nested(&Parser::expression));
+    builder_.store(name.text, name.at);
+    builder_.patch(given);
+    return {};
 }
 
 Result<void> Parser::conditional() {
@@ -202,13 +176,8 @@ Result<void> Parser::conditional() {
         builder_.patch(otherwise);
     } while (peek().kind == Kind::word_elif);
     if (takeIf(Kind::word_else)) {
-        auto done = expect(Kind::colon, "':'");
-        if (done) {
-            done = block();
-        }
-        if (!done) {
-            return done;
-        }
+        METIER_TRY(expect(Kind::colon, "':'"));
+        METIER_TRY(block());
     }
     for (const std::size_t end : ends) {
         builder_.patch(end);
@@ -232,30 +201,27 @@ Result<void> Parser::loop() {
 }
 
 Result<void> Parser::condition() {
-    auto done = nested(&Parser::expression);
-    return done ? expect(Kind::colon, "':'") : done;
+    METIER_TRY(nested(&Parser::expression));
+    return expect(Kind::colon, "':'");
 }
 
 Result<void> Parser::declaration(bool is_global) {
     take();
     const Token& name = peek();
-    auto done = expect(Kind::name, "a variable's name");
-    if (!done) {
-        return done;
-    }
+    METIER_TRY(expect(Kind::name, "a variable's name"));
     const bool has_value = takeIf(Kind::assign);
     if (has_value) {
-        done = nested(&Parser::expression);
+        METIER_TRY(nested(&Parser::expression));
     }
     if (is_global) {
         builder_.declareGlobal(name.text);
     } else {
         builder_.declareLocal(name.text);
     }
-    if (done && has_value) {
+    if (has_value) {
         builder_.store(name.text, name.at);
     }
-    return done;
+    return {};
 }
 
 Result<void> Parser::assignmentOrCall() {
@@ -282,11 +248,10 @@ Result<void> Parser::elementAssignment(const Token& name) {
             return failAt(peek().at, fmt::format("more than {} indices", kMostIndices));
         }
     }
-    auto done = expect(Kind::assign, "'='");
-    if (done) {
-        done = nested(&Parser::expression);
-    }
-    return done.map([&] { builder_.storeElement(name.text, indices, name.at); });
+    METIER_TRY(expect(Kind::assign, "'='"));
+    METIER_TRY(nested(&Parser::expression));
+    builder_.storeElement(name.text, indices, name.at);
+    return {};
 }
 
 Result<void> Parser::handleStatement(Op op) {
@@ -299,14 +264,13 @@ Result<void> Parser::handleStatement(Op op) {
 
 Result<void> Parser::giveBack() {
     const Position at = take().at;
-    Result<void> done;
     if (peek().kind == Kind::new_line || peek().kind == Kind::semicolon || endsBlock(peek().kind)) {
         builder_.constant(Value(), at);
     } else {
-        done = nested(&Parser::expression);
+        METIER_TRY(nested(&Parser::expression));
     }
     builder_.emit(Op::give_back, at);
-    return done;
+    return {};
 }
 
 Result<void> Parser::leaveLoop(bool again) {
@@ -327,6 +291,11 @@ Result<void> Parser::leaveLoop(bool again) {
 Result<void> Parser::critical() {
     take();
     return takeIf(Kind::left_paren) ? expect(Kind::right_paren, "')'") : Result<void>();
+}
+
+void Parser::takeLineEnds() {
+    while (takeIf(Kind::new_line) || takeIf(Kind::semicolon)) {
+    }
 }
 
 Result<void> Parser::nested(Step step) {

@@ -6,6 +6,7 @@
 
 #include "code_builder.hpp"
 #include "metier/base/error.hpp"
+#include "operators.hpp"
 #include "token_reader.hpp"
 
 namespace metier::urscript {
@@ -44,13 +45,14 @@ private:
     Result<void> giveBack();
     Result<void> leaveLoop(bool again);
     Result<void> critical();
+    void takeLineEnds();
 
     // expression_parser.cpp
     Result<void> expression();
     Result<void> orExpression();
     Result<void> andExpression();
     Result<void> notExpression();
-    Result<void> leftToRight(Step operand, Op (*operation)(TokenKind));
+    Result<void> leftToRight(Step operand, Precedence precedence);
     Result<void> comparison();
     Result<void> sum();
     Result<void> product();
@@ -63,6 +65,8 @@ private:
     Result<void> pose();
     Result<void> list();
     Result<void> runThread();
+    /// The comma behind a value, or `end`, which is not taken.
+    Result<void> separator(TokenKind end);
     /// Expressions up to `end`, separated by commas; how many there were.
     Result<std::size_t> expressions(TokenKind end, std::size_t most);
     bool isPose() const;

@@ -58,44 +58,38 @@ Thread::Thread(std::int32_t handle, const Code& code, std::size_t function)
       stack_(code.functions[function].locals.size()) {}
 
 Thread::State Thread::step(ThreadContext& context) {
-    if (state_ != State::ready || !resume(context)) {
+    if (state_ != State::ready) {
         return state_;
     }
-    while (state_ == State::ready && !wait_) {
+    auto done = resume(context);
+    while (done && state_ == State::ready && !wait_) {
         Frame& frame = frames_.back();
         const Instruction& instruction = frame.function->instructions[frame.next];
         ++frame.next;
         at_ = instruction.at;
-        auto done = spend(context, 1);
+        done = spend(context, 1);
         if (done) {
             done = execute(instruction, context);
         }
-        if (!done) {
-            return fails(std::move(done.error()));
-        }
+    }
+    if (!done) {
+        error_ = std::move(done.error());
+        state_ = State::failed;
     }
     return state_;
 }
 
-/// \return whether the thread can go on
-bool Thread::resume(ThreadContext& context) {
+/// Ends a wait if what it waits for has come.
+Result<void> Thread::resume(ThreadContext& context) {
     if (!wait_) {
-        return true;
+        return {};
     }
-    auto came = wait_();
+    METIER_ASSIGN(auto came, wait_());
     if (!came) {
-        fails(std::move(came.error()));
-        return false;
-    }
-    if (!came->has_value()) {
-        return false;
+        return {};
     }
     wait_ = nullptr;
-    if (auto pushed = push(**std::move(came), context); !pushed) {
-        fails(std::move(pushed.error()));
-        return false;
-    }
-    return true;
+    return push(*std::move(came), context);
 }
 
 Result<void> Thread::execute(const Instruction& instruction, ThreadContext& context) {
@@ -325,12 +319,6 @@ Value Thread::pop() {
 
 Value& Thread::local(std::int32_t index) {
     return stack_[frames_.back().base + static_cast<std::size_t>(index)];
-}
-
-Thread::State Thread::fails(Error error) {
-    error_ = std::move(error);
-    state_ = State::failed;
-    return state_;
 }
 
 }  // namespace metier::urscript

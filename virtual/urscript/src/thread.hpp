@@ -53,7 +53,7 @@ private:
         std::size_t base = 0;  // index of its first local variable in the stack
     };
 
-    bool resume(ThreadContext& context);
+    Result<void> resume(ThreadContext& context);
     Result<void> execute(const Instruction& instruction, ThreadContext& context);
     Result<void> executeRare(const Instruction& instruction, ThreadContext& context);
     Result<void> load(const Value& value, std::string_view name, ThreadContext& context);
@@ -72,7 +72,6 @@ private:
     Result<void> push(Result<Value> value, ThreadContext& context);
     Value pop();
     Value& local(std::int32_t index);
-    State fails(Error error);
 
     std::int32_t handle_;
     const Code& code_;

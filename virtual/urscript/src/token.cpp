@@ -67,30 +67,15 @@ bool isNamePart(char c) {
     return isNameStart(c) || isDigit(c);
 }
 
-/// Reports whether a statement cannot end behind this token.
+// Tokens behind which a statement cannot end.
+constexpr std::array kUnfinished{
+    Kind::word_and, Kind::word_or,       Kind::word_xor,  Kind::word_not, Kind::assign,
+    Kind::comma,    Kind::equal,         Kind::not_equal, Kind::less,     Kind::less_equal,
+    Kind::greater,  Kind::greater_equal, Kind::plus,      Kind::minus,    Kind::star,
+    Kind::slash,    Kind::percent};
+
 bool goesOn(Kind kind) {
-    switch (kind) {
-        case Kind::word_and:
-        case Kind::word_or:
-        case Kind::word_xor:
-        case Kind::word_not:
-        case Kind::assign:
-        case Kind::comma:
-        case Kind::equal:
-        case Kind::not_equal:
-        case Kind::less:
-        case Kind::less_equal:
-        case Kind::greater:
-        case Kind::greater_equal:
-        case Kind::plus:
-        case Kind::minus:
-        case Kind::star:
-        case Kind::slash:
-        case Kind::percent:
-            return true;
-        default:
-            return false;
-    }
+    return std::ranges::find(kUnfinished, kind) != kUnfinished.end();
 }
 
 class Tokenizer {
