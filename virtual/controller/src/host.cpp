@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <asio/post.hpp>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <utility>
 
 #include "metier/base/text.hpp"
@@ -19,46 +20,30 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds kLookForSolitude{10};
 
-Result<std::uint32_t> wholeNumber(const Injection& injection, std::uint32_t limit) {
-    const auto number = numberIn<std::uint32_t>(injection.value);
-    if (!number || *number > limit) {
-        return fail(Errc::invalid_argument,
-                    fmt::format("{} needs a whole number, 0 to {}; not \"{}\"", injection.name,
-                                limit, injection.value));
-    }
-    return *number;
-}
-
-/// The faults that every controller has.
-const std::vector<InjectionHelp>& commonInjections() {
-    static const std::vector<InjectionHelp> kHelp{
-        {"cut-link", "Nothing comes through any port, and no peer is told"},
-        {"restore-link", "Ends cut-link, delay and garble"},
-        {"delay", "Everything is sent later by MS milliseconds, 0 to 10000"},
-        {"garble", "One byte of each of the next N packets is changed, 0 to 1000"},
-        {"restart", "Power off and on: every connection breaks"},
+/// An injection that sets a number.
+auto numberFor(std::atomic<std::uint32_t>& fault, std::string_view name, std::uint32_t limit) {
+    return [&fault, name, limit](const std::string& value) -> Result<void> {
+        const auto number = numberIn<std::uint32_t>(value);
+        if (!number || *number > limit) {
+            return fail(
+                Errc::invalid_argument,
+                fmt::format("{} needs a whole number, 0 to {}; not \"{}\"", name, limit, value));
+        }
+        fault = *number;
+        return {};
     };
-    return kHelp;
-}
-
-std::string knownTypes(const std::vector<ControllerType>& types) {
-    std::vector<std::string_view> names;
-    for (const auto& type : types) {
-        names.push_back(type.name);
-    }
-    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace
 
 Result<std::unique_ptr<Host>> Host::start(HostOptions options,
                                           const std::vector<ControllerType>& types) {
-    const auto type = std::find_if(types.begin(), types.end(),
-                                   [&](const auto& known) { return known.name == options.type; });
+    const auto type = std::ranges::find(types, options.type, &ControllerType::name);
     if (type == types.end()) {
-        return fail(Errc::invalid_argument,
-                    fmt::format("no virtual controller of type \"{}\"; there are: {}", options.type,
-                                knownTypes(types)));
+        return fail(
+            Errc::invalid_argument,
+            fmt::format("no virtual controller of type \"{}\"; there are: {}", options.type,
+                        fmt::join(types | std::views::transform(&ControllerType::name), ", ")));
     }
     std::unique_ptr<Host> host(new Host());
     if (options.world_address.empty()) {
@@ -67,24 +52,21 @@ Result<std::unique_ptr<Host>> Host::start(HostOptions options,
         host->world_ =
             std::make_unique<RemoteWorld>(host->context_, options.name, options.world_address);
     }
-    METIER_ASSIGN(auto controller, type->start({host->context_, options.name, options.address,
-                                                std::move(options.settings), options.model,
-                                                host->faults_, *host->world_}));
-    host->controller_ = std::move(controller);
-    auto control = TcpServer::listen(
-        host->context_, options.address, options.control_port, host->no_faults_,
-        {.on_connected = {},
-         .on_data =
-             [self = host.get()](TcpPeer& peer, auto bytes) {
-                 self->lines_.add(peer, bytes, [&](std::string_view line) {
-                     peer.send(self->controlAnswer(line).dump() + '\n');
-                 });
-             },
-         .on_closed = [self = host.get()](TcpPeer& peer) { self->lines_.forget(peer); }});
-    if (!control) {
-        return fail(control.error());
-    }
-    host->control_ = std::move(*control);
+    METIER_ASSIGN(host->controller_, type->start({host->context_, options.name, options.address,
+                                                  std::move(options.settings), options.model,
+                                                  host->faults_, *host->world_}));
+    METIER_ASSIGN(
+        host->control_,
+        TcpServer::listen(
+            host->context_, options.address, options.control_port, host->no_faults_,
+            {.on_connected = {},
+             .on_data =
+                 [self = host.get()](TcpPeer& peer, auto bytes) {
+                     self->lines_.add(peer, bytes, [&](std::string_view line) {
+                         peer.send(self->controlAnswer(line).dump() + '\n');
+                     });
+                 },
+             .on_closed = [self = host.get()](TcpPeer& peer) { self->lines_.forget(peer); }}));
     return host;
 }
 
@@ -116,7 +98,7 @@ Json Host::controlAnswer(std::string_view line) {
                                   request.contains("value") && request.at("value").is_string()
                                       ? request.at("value").get<std::string>()
                                       : std::string()};
-        if (const auto done = inject(injection); !done) {
+        if (const auto done = performOneOf(injections(), injection); !done) {
             return {{"error", done.error().message}};
         }
         return {{"ok", true}};
@@ -135,42 +117,31 @@ Json Host::controlAnswer(std::string_view line) {
         {"error", R"(needs {"inject": NAME, "value": TEXT}, {"state": true} or {"help": true})"}};
 }
 
-std::vector<InjectionHelp> Host::injections() const {
+/// Those of the controller, then the faults that every controller has.
+std::vector<InjectionHelp> Host::injections() {
     auto all = controller_->injections();
-    all.insert(all.end(), commonInjections().begin(), commonInjections().end());
-    return all;
-}
-
-Result<void> Host::inject(const Injection& injection) {
-    if (injection.name == "cut-link") {
-        faults_.cut = true;
-    } else if (injection.name == "restore-link") {
-        faults_.cut = false;
-        faults_.delay_ms = 0;
-        faults_.garble = 0;
-    } else if (injection.name == "restart") {
-        controller_->restart();
-    } else if (injection.name == "delay" || injection.name == "garble") {
-        const bool delay = injection.name == "delay";
-        METIER_ASSIGN(const auto number, wholeNumber(injection, delay ? 10'000 : 1'000));
-        (delay ? faults_.delay_ms : faults_.garble) = number;
-    } else {
-        const auto all = injections();
-        const auto known = std::any_of(all.begin(), all.end(), [&](const auto& entry) {
-            return entry.name == injection.name;
-        });
-        if (!known) {
-            std::vector<std::string> names;
-            for (const auto& entry : all) {
-                names.push_back(entry.name);
-            }
-            return fail(Errc::not_found, fmt::format("nothing called \"{}\" can be injected here; "
-                                                     "there are: {}",
-                                                     injection.name, fmt::join(names, ", ")));
-        }
-        return controller_->inject(injection);
+    for (auto& known : all) {
+        known.perform = [this, name = known.name](const std::string& value) {
+            return controller_->inject({name, value});
+        };
     }
-    return {};
+    const std::vector<InjectionHelp> common{
+        {"cut-link", "Nothing comes through any port, and no peer is told",
+         always([this] { faults_.cut = true; })},
+        {"restore-link", "Ends cut-link, delay and garble", always([this] {
+             faults_.cut = false;
+             faults_.delay_ms = 0;
+             faults_.garble = 0;
+         })},
+        {"delay", "Everything is sent later by MS milliseconds, 0 to 10000",
+         numberFor(faults_.delay_ms, "delay", 10'000)},
+        {"garble", "One byte of each of the next N packets is changed, 0 to 1000",
+         numberFor(faults_.garble, "garble", 1'000)},
+        {"restart", "Power off and on: every connection breaks",
+         always([this] { controller_->restart(); })},
+    };
+    all.insert(all.end(), common.begin(), common.end());
+    return all;
 }
 
 }  // namespace metier::virtual_controller

@@ -23,25 +23,33 @@ RemoteWorld::RemoteWorld(asio::io_context& context, std::string name, std::strin
     connect();
 }
 
+/// A handler that calls `then` if its operation went well.
+template <typename Then>
+auto RemoteWorld::orConnectLater(Then then) {
+    return [this, then](const asio::error_code& error, auto...) {
+        if (error == asio::error::operation_aborted) {
+            return;  // the world may be destroyed
+        }
+        if (error) {
+            connectLater();
+        } else {
+            then();
+        }
+    };
+}
+
 void RemoteWorld::connect() {
     asio::error_code ignored;
     socket_.close(ignored);
     incoming_.consume(incoming_.size());
     connected_ = false;
     awaiting_ = false;
-    socket_.async_connect(endpoint_, [this](const asio::error_code& error) {
-        if (error == asio::error::operation_aborted) {
-            return;
-        }
-        if (error) {
-            connectLater();
-            return;
-        }
-        asio::error_code also_ignored;
-        socket_.set_option(asio::ip::tcp::no_delay(true), also_ignored);
-        connected_ = true;
-        send();
-    });
+    socket_.async_connect(endpoint_, orConnectLater([this] {
+                              asio::error_code also_ignored;
+                              socket_.set_option(asio::ip::tcp::no_delay(true), also_ignored);
+                              connected_ = true;
+                              send();
+                          }));
 }
 
 void RemoteWorld::connectLater() {
@@ -68,29 +76,11 @@ void RemoteWorld::send() {
     awaiting_ = true;
     unsent_ = false;
     outgoing_ = toLine({name_, newest_});
-    asio::async_write(socket_, asio::buffer(outgoing_),
-                      [this](const asio::error_code& error, std::size_t) {
-                          if (error == asio::error::operation_aborted) {
-                              return;
-                          }
-                          if (error) {
-                              connectLater();
-                          } else {
-                              readEffect();
-                          }
-                      });
+    asio::async_write(socket_, asio::buffer(outgoing_), orConnectLater([this] { readEffect(); }));
 }
 
 void RemoteWorld::readEffect() {
-    asio::async_read_until(socket_, incoming_, '\n',
-                           [this](const asio::error_code& error, std::size_t) {
-                               if (error == asio::error::operation_aborted) {
-                                   return;
-                               }
-                               if (error) {
-                                   connectLater();
-                                   return;
-                               }
+    asio::async_read_until(socket_, incoming_, '\n', orConnectLater([this] {
                                std::istream stream(&incoming_);
                                std::string line;
                                std::getline(stream, line);
@@ -99,7 +89,7 @@ void RemoteWorld::readEffect() {
                                }
                                awaiting_ = false;
                                send();
-                           });
+                           }));
 }
 
 }  // namespace metier::virtual_controller

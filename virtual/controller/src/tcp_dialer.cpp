@@ -79,29 +79,17 @@ private:
                                                                   // dialer still exists
 };
 
-Result<asio::ip::address> parseAddress(const std::string& text) {
-    asio::error_code error;
-    const auto address = asio::ip::make_address(text, error);
-    if (error) {
-        return fail(Errc::invalid_argument, fmt::format("\"{}\" is not an address", text));
-    }
-    return address;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<TcpDialer>> TcpDialer::create(asio::io_context& context, const Route& route,
                                                      LinkFaults& faults, Handlers handlers) {
-    const auto from = parseAddress(route.from);
-    const auto to = parseAddress(route.to);
-    if (!from || !to) {
-        return fail(from ? to.error() : from.error());
-    }
+    METIER_ASSIGN(const auto from, parseAddress(route.from));
+    METIER_ASSIGN(const auto to, parseAddress(route.to));
     if (route.port == 0) {
         return fail(Errc::invalid_argument, "port 0 cannot be dialled");
     }
     return std::make_unique<Dialer>(
-        tcp::socket(context), std::pair(tcp::endpoint(*from, 0), tcp::endpoint(*to, route.port)),
+        tcp::socket(context), std::pair(tcp::endpoint(from, 0), tcp::endpoint(to, route.port)),
         faults, std::move(handlers));
 }
 

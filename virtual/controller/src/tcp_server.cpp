@@ -51,15 +51,21 @@ private:
 
 }  // namespace
 
+Result<asio::ip::address> parseAddress(const std::string& text) {
+    asio::error_code error;
+    const auto address = asio::ip::make_address(text, error);
+    if (error) {
+        return fail(Errc::invalid_argument, fmt::format("\"{}\" is not an address", text));
+    }
+    return address;
+}
+
 Result<std::unique_ptr<TcpServer>> TcpServer::listen(asio::io_context& context,
                                                      const std::string& address, std::uint16_t port,
                                                      LinkFaults& faults, Handlers handlers) {
     const auto name = fmt::format("{}:{}", address, port);
+    METIER_ASSIGN(const auto parsed, parseAddress(address));
     asio::error_code error;
-    const auto parsed = asio::ip::make_address(address, error);
-    if (error) {
-        return fail(Errc::invalid_argument, fmt::format("\"{}\" is not an address", address));
-    }
     tcp::acceptor acceptor(context);
     acceptor.open(tcp::endpoint(parsed, port).protocol(), error);
     acceptor.set_option(tcp::acceptor::reuse_address(true), error);

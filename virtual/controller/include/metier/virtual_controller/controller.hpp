@@ -26,7 +26,16 @@ struct Injection {
 struct InjectionHelp {
     std::string name;
     std::string help;  ///< one line; names the argument, its unit and range
+    /// Performs it with the argument. Errors: invalid_argument.
+    std::function<Result<void>(const std::string& value)> perform{};
 };
+
+/// An injection that needs no argument and cannot fail.
+std::function<Result<void>(const std::string& value)> always(std::function<void()> act);
+
+/// Performs the one of `known` that has the name.
+/// Errors: not_found, with the known names; those of the injection.
+Result<void> performOneOf(const std::vector<InjectionHelp>& known, const Injection& injection);
 
 /// Virtual controller of a robot, gripper or sensor: uses the maker's wire protocol, but has no
 /// device.
@@ -38,8 +47,11 @@ public:
 
     /// Injections that it supports, in addition to the link faults, which every controller has.
     virtual std::vector<InjectionHelp> injections() const = 0;
+    /// By itself it performs what injections() gives.
     /// Errors: not_found (no such injection), invalid_argument.
-    virtual Result<void> inject(const Injection& injection) = 0;
+    virtual Result<void> inject(const Injection& injection) {
+        return performOneOf(injections(), injection);
+    }
     /// State seen from outside: modes, joint position [rad], width [m], ...
     virtual nlohmann::ordered_json state() const = 0;
     /// Switches the power off and on: every connection breaks, every mode is the initial one.

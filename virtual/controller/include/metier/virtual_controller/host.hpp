@@ -55,8 +55,7 @@ public:
 private:
     Host() = default;
     void awaitSolitude(SteadyTime deadline);
-    Result<void> inject(const Injection& injection);
-    std::vector<InjectionHelp> injections() const;
+    std::vector<InjectionHelp> injections();
 
     asio::io_context context_;
     asio::steady_timer solitude_{context_};

@@ -31,10 +31,10 @@ public:
     /// dropped.
     void report(const WorldReport& report) override;
     const WorldEffect& effect() const override { return effect_; }
-    /// Reports whether there is a connection to the world.
-    bool connected() const noexcept { return connected_; }
 
 private:
+    template <typename Then>
+    auto orConnectLater(Then then);
     void connect();
     void connectLater();
     void send();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <asio/io_context.hpp>
+#include <asio/ip/address.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -35,6 +36,9 @@ public:
     /// Address and port of the peer, such as "127.0.0.1:51234".
     virtual const std::string& address() const = 0;
 };
+
+/// Errors: invalid_argument (not an address).
+Result<asio::ip::address> parseAddress(const std::string& text);
 
 /// A TCP port of a virtual controller.
 ///

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace metier::virtual_controller {
+
+using Bytes = std::vector<std::byte>;
+
+/// Appends numbers to a package, most significant byte first.
+class ByteWriter {
+public:
+    template <typename T>
+    requires std::is_arithmetic_v<T> ByteWriter& put(T value) {
+        if constexpr (std::same_as<T, bool>) {
+            return put(static_cast<std::uint8_t>(value));
+        } else if constexpr (std::same_as<T, double>) {
+            return put(std::bit_cast<std::uint64_t>(value));
+        } else if constexpr (std::same_as<T, float>) {
+            return put(std::bit_cast<std::uint32_t>(value));
+        } else {
+            const auto bits = static_cast<std::uint64_t>(value);
+            for (std::size_t i = sizeof(T); i-- > 0;) {
+                bytes_.push_back(static_cast<std::byte>(bits >> (8 * i)));
+            }
+            return *this;
+        }
+    }
+    template <typename Range>
+    requires requires(const Range& range) { range.begin(); }
+    ByteWriter& putAll(const Range& values) {
+        for (const auto& value : values) {
+            put(value);
+        }
+        return *this;
+    }
+    ByteWriter& text(std::string_view text) {
+        const auto bytes = std::as_bytes(std::span(text));
+        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+        return *this;
+    }
+    ByteWriter& zeros(std::size_t count) {
+        bytes_.resize(bytes_.size() + count);
+        return *this;
+    }
+    ByteWriter& bytes(std::span<const std::byte> bytes) {
+        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+        return *this;
+    }
+    const Bytes& content() const { return bytes_; }
+
+private:
+    Bytes bytes_;
+};
+
+/// Takes numbers from a package. Reading beyond its end gives zeros and is noted.
+class ByteReader {
+public:
+    explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+    template <typename T>
+    requires std::is_arithmetic_v<T> T get() {
+        if constexpr (std::same_as<T, bool>) {
+            return get<std::uint8_t>() != 0;
+        } else if constexpr (std::same_as<T, double>) {
+            return std::bit_cast<double>(get<std::uint64_t>());
+        } else if constexpr (std::same_as<T, float>) {
+            return std::bit_cast<float>(get<std::uint32_t>());
+        } else {
+            if (bytes_.size() < sizeof(T)) {
+                complete_ = false;
+                bytes_ = {};
+                return T{};
+            }
+            std::uint64_t bits = 0;
+            for (std::size_t i = 0; i < sizeof(T); ++i) {
+                bits = bits << 8U | std::to_integer<std::uint64_t>(bytes_[i]);
+            }
+            bytes_ = bytes_.subspan(sizeof(T));
+            return static_cast<T>(bits);
+        }
+    }
+    std::string_view rest() const {
+        return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};  // NOLINT: text
+    }
+    std::size_t left() const { return bytes_.size(); }
+    /// Reports whether every requested byte was there.
+    bool complete() const { return complete_; }
+
+private:
+    std::span<const std::byte> bytes_;
+    bool complete_ = true;
+};
+
+}  // namespace metier::virtual_controller
