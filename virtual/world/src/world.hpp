@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
+#include "metier/cell/settings.hpp"
 #include "metier/motion/pose.hpp"
 #include "metier/virtual_controller/world_link.hpp"
 
@@ -90,5 +91,8 @@ private:
     WorldOptions options_;
     std::map<std::string, Arm> arms_;
 };
+
+/// Reads a world's settings; errors are noted in them. virtual/world/README.md lists the settings.
+WorldOptions readOptions(const cell::Settings& settings);
 
 }  // namespace metier::virtual_world

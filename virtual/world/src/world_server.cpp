@@ -13,14 +13,12 @@
 #include "metier/virtual_controller/tcp_server.hpp"
 #include "metier/virtual_controller/world_messages.hpp"
 #include "world.hpp"
-#include "world_settings.hpp"
 
 namespace metier::virtual_world {
 namespace {
 
 using virtual_controller::Controller;
 using virtual_controller::ControllerRequest;
-using virtual_controller::Injection;
 using virtual_controller::InjectionHelp;
 using virtual_controller::TcpPeer;
 using virtual_controller::TcpServer;
@@ -30,38 +28,19 @@ public:
     explicit WorldServer(WorldOptions options) : options_(options), world_(std::move(options)) {}
 
     Result<void> listen(const ControllerRequest& request, std::uint16_t port) {
-        auto server = TcpServer::listen(
-            request.context, request.address, port, request.faults,
-            {.on_connected = {},
-             .on_data =
-                 [this](TcpPeer& peer, auto bytes) {
-                     lines_.add(peer, bytes, [&](std::string_view line) { answer(peer, line); });
-                 },
-             .on_closed = [this](TcpPeer& peer) { lines_.forget(peer); }});
-        if (!server) {
-            return fail(server.error());
-        }
-        server_ = std::move(*server);
-        return {};
+        return TcpServer::listen(request.context, request.address, port, request.faults,
+                                 {.on_connected = {},
+                                  .on_data =
+                                      [this](TcpPeer& peer, auto bytes) {
+                                          lines_.add(peer, bytes, [&](std::string_view line) {
+                                              answer(peer, line);
+                                          });
+                                      },
+                                  .on_closed = [this](TcpPeer& peer) { lines_.forget(peer); }})
+            .map([this](auto opened) { server_ = std::move(opened); });
     }
 
-    std::vector<InjectionHelp> injections() const override {
-        return {{"drop", "Parts held by the gripper CONTROLLER fall; without a name: all parts"},
-                {"remove", "Takes the part NAME away"},
-                {"place", "Puts a part somewhere: NAME,X,Y,Z in m"}};
-    }
-
-    Result<void> inject(const Injection& injection) override {
-        if (injection.name == "drop") {
-            world_.drop(injection.value);
-            return {};
-        }
-        if (injection.name == "remove") {
-            return world_.remove(injection.value);
-        }
-        return place(injection.value);
-    }
-
+    std::vector<InjectionHelp> injections() const override { return injections_; }
     nlohmann::ordered_json state() const override {
         auto parts = nlohmann::ordered_json::object();
         for (const auto& [name, part] : world_.parts()) {
@@ -102,6 +81,16 @@ private:
         return world_.place(text.substr(0, comma), {x, y, z});
     }
 
+    const std::vector<InjectionHelp> injections_{
+        {"drop", "Parts held by the gripper CONTROLLER fall; without a name: all parts",
+         [this](const std::string& gripper) -> Result<void> {
+             world_.drop(gripper);
+             return {};
+         }},
+        {"remove", "Takes the part NAME away",
+         [this](const std::string& part) { return world_.remove(part); }},
+        {"place", "Puts a part somewhere: NAME,X,Y,Z in m",
+         [this](const std::string& text) { return place(text); }}};
     WorldOptions options_;
     World world_;
     std::unique_ptr<TcpServer> server_;
