@@ -1,38 +1,44 @@
-#include "controller.hpp"
+#include "metier/virtual_controller/controller.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
+
+#include "metier/virtual_controller/cycle_timer.hpp"
+#include "metier/virtual_controller/tcp_server.hpp"
+#include "sensor.hpp"
+#include "udp_port.hpp"
+#include "web.hpp"
 
 namespace metier::virtual_netft {
-
 namespace {
 
-using virtual_controller::InjectionHelp;
-using virtual_controller::TcpPeer;
+using namespace virtual_controller;
+
+/// Options from the settings (README.md).
+struct Options {
+    std::uint16_t port = 49152;
+    std::uint16_t http_port = 0;  ///< 0: no web pages
+    double rate = 1000.0;         ///< initial rate [1/s]
+    int buffer_size = 5;          ///< initial number of records in one datagram of the buffered
+                                  ///< mode
+    std::string product;
+    Calibration calibration;
+};
 
 constexpr std::size_t kLongestWebRequest = 8192;
-
-struct NamedStatus {
-    std::string_view name;
-    std::string_view help;
-    std::uint32_t status;
-};
-
-constexpr std::array kStatuses{
-    NamedStatus{"ok", "the status word is 0 again", status::kHealthy},
-    NamedStatus{"saturation", "status word 80020000: a gauge is saturated", status::kSaturated},
-    NamedStatus{"warning", "status word 80010000 until a client resets the latch",
-                status::kMonitorLatched},
-    NamedStatus{"temperature-fault", "status word 80000004: outside its temperature",
-                status::kTemperature},
-};
 
 Unit readUnit(const cell::Settings& settings, std::string_view name, std::span<const Unit> units) {
     const auto wanted = settings.textOr(name, std::string(units.front().name));
@@ -61,8 +67,8 @@ Options readOptions(const cell::Settings& settings) {
     options.rate = settings.numberOr("rate", options.rate, 1.0, kSampleRate);
     options.buffer_size = static_cast<int>(settings.numberOr("buffer_size", 5, 1, 40));
     options.product = settings.textOr("product", "Net F/T");
-    calibration.force_unit = readUnit(settings, "force_unit", forceUnits());
-    calibration.torque_unit = readUnit(settings, "torque_unit", torqueUnits());
+    calibration.force_unit = readUnit(settings, "force_unit", kForceUnits);
+    calibration.torque_unit = readUnit(settings, "torque_unit", kTorqueUnits);
     calibration.counts_per_force = settings.numberOr("counts_per_force", 1e6, 1.0, 1e9);
     calibration.counts_per_torque = settings.numberOr("counts_per_torque", 1e6, 1.0, 1e9);
     calibration.force_noise = settings.numberOr("force_noise", 0.0, 0.0, 100.0);
@@ -92,12 +98,11 @@ Result<motion::Wrench> parseWrench(const std::string& text) {
     return motion::Wrench{{values[0], values[1], values[2]}, {values[3], values[4], values[5]}};
 }
 
-template <typename Number>
-Result<Number> parseNumber(std::string_view text, int base) {
+Result<std::uint32_t> parseNumber(std::string_view text, int base) {
     if (base == 16 && text.starts_with("0x")) {
         text.remove_prefix(2);
     }
-    Number number = 0;
+    std::uint32_t number = 0;
     const auto* end = text.data() + text.size();
     const auto [stopped, error] = std::from_chars(text.data(), end, number, base);
     if (error != std::errc{} || stopped != end) {
@@ -107,20 +112,57 @@ Result<Number> parseNumber(std::string_view text, int base) {
     return number;
 }
 
-}  // namespace
+/// A Net F/T: sends records over UDP to the client that asked last, and serves its web pages.
+class NetFtController final : public Controller {
+public:
+    NetFtController(const ControllerRequest& request, Options options);
+    /// Errors: those of UdpPort::bind() and TcpServer::listen().
+    Result<void> open(const ControllerRequest& request);
 
-Result<std::unique_ptr<NetFtController>> NetFtController::start(
-    const virtual_controller::ControllerRequest& request) {
-    auto options = readOptions(request.settings);
-    METIER_TRY(request.settings.finish());
-    auto controller =
-        std::unique_ptr<NetFtController>(new NetFtController(request, std::move(options)));
-    METIER_TRY(controller->open(request));
-    return controller;
-}
+    std::vector<InjectionHelp> injections() const override { return injections_; }
+    nlohmann::ordered_json state() const override;
+    void restart() override;
 
-NetFtController::NetFtController(const virtual_controller::ControllerRequest& request,
-                                 Options options)
+private:
+    struct Stream {
+        UdpPort::Endpoint to;
+        std::uint32_t records_per_datagram = 1;
+        std::uint32_t left = 0;  // records; 0: without end
+        std::uint32_t sent = 0;
+        std::vector<std::byte> datagram{};
+    };
+
+    std::vector<InjectionHelp> makeInjections();
+    Result<void> openWeb(const ControllerRequest& request);
+    void handle(const UdpPort::Endpoint& from, const Request& request);
+    void serveWeb(TcpPeer& peer, std::span<const std::byte> bytes);
+    WebPages pages() const;
+    void apply(const Change& change);
+    int rate() const noexcept { return kSampleRate / samples_per_record_; }
+    void cycle();
+    void stream(const Sensor::Reading& reading);
+
+    const Options options_;
+    const std::string address_;
+    const std::vector<InjectionHelp> injections_ = makeInjections();
+    int samples_per_record_;  // the rate of the records
+    int buffer_size_;
+    bool rdt_enabled_ = true;
+    int filter_ = 0;
+    WorldLink& world_;
+    std::optional<Sensor> sensor_;
+    motion::Wrench extra_load_;
+    std::uint32_t ft_sequence_ = 0;  // the sensor's own samples
+    std::uint32_t records_to_lose_ = 0;
+    Sensor::Reading last_;
+    std::optional<Stream> stream_;
+    std::unique_ptr<UdpPort> udp_;
+    std::unique_ptr<TcpServer> web_;
+    std::map<const TcpPeer*, std::string> web_requests_;
+    CycleTimer timer_;
+};
+
+NetFtController::NetFtController(const ControllerRequest& request, Options options)
     : options_(std::move(options)),
       address_(request.address),
       samples_per_record_(samplesPerRecord(options_.rate)),
@@ -129,42 +171,29 @@ NetFtController::NetFtController(const virtual_controller::ControllerRequest& re
       sensor_(options_.calibration),
       timer_(request.context, period(samples_per_record_), [this] { cycle(); }) {}
 
-Result<void> NetFtController::open(const virtual_controller::ControllerRequest& request) {
-    asio::error_code error;
-    const auto address = asio::ip::make_address(request.address, error);
-    if (error) {
-        return fail(Errc::invalid_argument,
-                    fmt::format("\"{}\" is not an address", request.address));
-    }
-    auto udp =
-        UdpPort::bind(request.context, {address, options_.port}, request.faults,
-                      [this](const UdpPort::Endpoint& from, std::span<const std::byte> datagram) {
-                          const auto parsed = parseRequest(datagram);
-                          if (parsed && rdt_enabled_) {
-                              handle(from, *parsed);
-                          }
-                      });
-    if (!udp) {
-        return fail(udp.error());
-    }
-    udp_ = std::move(*udp);
+Result<void> NetFtController::open(const ControllerRequest& request) {
+    METIER_ASSIGN(const auto address, parseAddress(request.address));
+    METIER_ASSIGN(udp_, UdpPort::bind(request.context, {address, options_.port}, request.faults,
+                                      [this](const UdpPort::Endpoint& from,
+                                             std::span<const std::byte> datagram) {
+                                          const auto parsed = parseRequest(datagram);
+                                          if (parsed && rdt_enabled_) {
+                                              handle(from, *parsed);
+                                          }
+                                      }));
     return options_.http_port == 0 ? Result<void>() : openWeb(request);
 }
 
 // ---- web pages ---------------------------------------------------------------------------------
 
-Result<void> NetFtController::openWeb(const virtual_controller::ControllerRequest& request) {
-    auto web = virtual_controller::TcpServer::listen(
-        request.context, request.address, options_.http_port, request.faults,
-        {.on_connected = {},
-         .on_data = [this](TcpPeer& peer,
-                           std::span<const std::byte> bytes) { serveWeb(peer, bytes); },
-         .on_closed = [this](TcpPeer& peer) { web_requests_.erase(&peer); }});
-    if (!web) {
-        return fail(web.error());
-    }
-    web_ = std::move(*web);
-    return {};
+Result<void> NetFtController::openWeb(const ControllerRequest& request) {
+    return TcpServer::listen(
+               request.context, request.address, options_.http_port, request.faults,
+               {.on_connected = {},
+                .on_data = [this](TcpPeer& peer,
+                                  std::span<const std::byte> bytes) { serveWeb(peer, bytes); },
+                .on_closed = [this](TcpPeer& peer) { web_requests_.erase(&peer); }})
+        .map([this](auto web) { web_ = std::move(web); });
 }
 
 void NetFtController::serveWeb(TcpPeer& peer, std::span<const std::byte> bytes) {
@@ -286,41 +315,30 @@ void NetFtController::restart() {
     }
 }
 
-std::vector<InjectionHelp> NetFtController::injections() const {
-    std::vector<InjectionHelp> all{
-        {"status", "the status word, as 80020000 (hexadecimal)"},
-        {"wrench", "a load besides the world's: fx fy fz tx ty tz [N], [Nm]; empty: none"},
-        {"lose", "so many of the next records get lost"},
+std::vector<InjectionHelp> NetFtController::makeInjections() {
+    const auto status_is = [this](std::uint32_t word) {
+        return always([this, word] { sensor_->setStatus(word); });
     };
-    for (const auto& named : kStatuses) {
-        all.push_back({std::string(named.name), std::string(named.help)});
-    }
-    return all;
-}
-
-Result<void> NetFtController::inject(const virtual_controller::Injection& injection) {
-    const auto named = std::ranges::find(kStatuses, injection.name, &NamedStatus::name);
-    if (named != kStatuses.end()) {
-        sensor_->setStatus(named->status);
-        return {};
-    }
-    if (injection.name == "status") {
-        return parseNumber<std::uint32_t>(injection.value, 16).map([this](std::uint32_t word) {
-            sensor_->setStatus(word);
-        });
-    }
-    if (injection.name == "wrench") {
-        return parseWrench(injection.value).map([this](const motion::Wrench& load) {
-            extra_load_ = load;
-        });
-    }
-    if (injection.name == "lose") {
-        return parseNumber<std::uint32_t>(injection.value, 10).map([this](std::uint32_t count) {
-            records_to_lose_ = count;
-        });
-    }
-    return fail(Errc::not_found,
-                fmt::format("a Net F/T knows no injection \"{}\"", injection.name));
+    return {
+        {"status", "the status word, as 80020000 (hexadecimal)",
+         [this](const std::string& value) {
+             return parseNumber(value, 16).map([this](auto word) { sensor_->setStatus(word); });
+         }},
+        {"wrench", "a load besides the world's: fx fy fz tx ty tz [N], [Nm]; empty: none",
+         [this](const std::string& value) {
+             return parseWrench(value).map([this](const auto& load) { extra_load_ = load; });
+         }},
+        {"lose", "so many of the next records get lost",
+         [this](const std::string& value) {
+             return parseNumber(value, 10).map([this](auto count) { records_to_lose_ = count; });
+         }},
+        {"ok", "the status word is 0 again", status_is(status::kHealthy)},
+        {"saturation", "status word 80020000: a gauge is saturated", status_is(status::kSaturated)},
+        {"warning", "status word 80010000 until a client resets the latch",
+         status_is(status::kMonitorLatched)},
+        {"temperature-fault", "status word 80000004: outside its temperature",
+         status_is(status::kTemperature)},
+    };
 }
 
 nlohmann::ordered_json NetFtController::state() const {
@@ -339,16 +357,22 @@ nlohmann::ordered_json NetFtController::state() const {
     };
 }
 
+Result<std::unique_ptr<Controller>> start(const ControllerRequest& request) {
+    auto options = readOptions(request.settings);
+    METIER_TRY(request.settings.finish());
+    auto controller = std::make_unique<NetFtController>(request, std::move(options));
+    METIER_TRY(controller->open(request));
+    return controller;
+}
+
+}  // namespace
 }  // namespace metier::virtual_netft
 
 namespace metier::virtual_controller {
 
 ControllerType netftController();
 ControllerType netftController() {
-    return {"netft", "ATI Net F/T force-torque sensor: RDT over UDP",
-            [](const ControllerRequest& request) -> Result<std::unique_ptr<Controller>> {
-                return virtual_netft::NetFtController::start(request);
-            }};
+    return {"netft", "ATI Net F/T force-torque sensor: RDT over UDP", virtual_netft::start};
 }
 
 }  // namespace metier::virtual_controller

@@ -8,28 +8,7 @@ namespace metier::virtual_netft {
 
 namespace {
 
-constexpr double kPoundForce = 4.4482216152605;  // [N]
-constexpr double kKilogramForce = 9.80665;       // [N]
-constexpr double kInch = 0.0254;                 // [m]
-constexpr double kFoot = 0.3048;                 // [m]
-
 constexpr double kGaugeRange = 32767.0;
-
-constexpr std::array kForceUnits{Unit{"N", 1.0, 2},
-                                 Unit{"kN", 1e3, 4},
-                                 Unit{"lbf", kPoundForce, 1},
-                                 Unit{"klbf", 1e3 * kPoundForce, 3},
-                                 Unit{"kgf", kKilogramForce, 5},
-                                 Unit{"gf", 1e-3 * kKilogramForce, 6}};
-constexpr std::array kTorqueUnits{Unit{"Nm", 1.0, 3},
-                                  Unit{"N-m", 1.0, 3},
-                                  Unit{"Nmm", 1e-3, 4},
-                                  Unit{"N-mm", 1e-3, 4},
-                                  Unit{"kN-m", 1e3, 6},
-                                  Unit{"lbf-in", kPoundForce* kInch, 1},
-                                  Unit{"lbf-ft", kPoundForce* kFoot, 2},
-                                  Unit{"kNm", 1e3, 6},
-                                  Unit{"kgf-cm", 1e-2 * kKilogramForce, 5}};
 
 std::int32_t toCounts(double value) {
     constexpr double most = std::numeric_limits<std::int32_t>::max();
@@ -37,14 +16,6 @@ std::int32_t toCounts(double value) {
 }
 
 }  // namespace
-
-std::span<const Unit> forceUnits() noexcept {
-    return kForceUnits;
-}
-
-std::span<const Unit> torqueUnits() noexcept {
-    return kTorqueUnits;
-}
 
 Sensor::Reading Sensor::read(const motion::Wrench& load) {
     Reading reading;

@@ -19,9 +19,27 @@ struct Unit {
     int code = 0;  ///< its number on the pages
 };
 
+inline constexpr double kPoundForce = 4.4482216152605;  // [N]
+inline constexpr double kKilogramForce = 9.80665;       // [N]
+inline constexpr double kInch = 0.0254;                 // [m]
+inline constexpr double kFoot = 0.3048;                 // [m]
+
 /// Units in the spelling of the sensor's web pages.
-std::span<const Unit> forceUnits() noexcept;
-std::span<const Unit> torqueUnits() noexcept;
+inline constexpr std::array kForceUnits{Unit{"N", 1.0, 2},
+                                        Unit{"kN", 1e3, 4},
+                                        Unit{"lbf", kPoundForce, 1},
+                                        Unit{"klbf", 1e3 * kPoundForce, 3},
+                                        Unit{"kgf", kKilogramForce, 5},
+                                        Unit{"gf", 1e-3 * kKilogramForce, 6}};
+inline constexpr std::array kTorqueUnits{Unit{"Nm", 1.0, 3},
+                                         Unit{"N-m", 1.0, 3},
+                                         Unit{"Nmm", 1e-3, 4},
+                                         Unit{"N-mm", 1e-3, 4},
+                                         Unit{"kN-m", 1e3, 6},
+                                         Unit{"lbf-in", kPoundForce* kInch, 1},
+                                         Unit{"lbf-ft", kPoundForce* kFoot, 2},
+                                         Unit{"kNm", 1e3, 6},
+                                         Unit{"kgf-cm", 1e-2 * kKilogramForce, 5}};
 
 /// Rate of the sensor's own samples, independent of the rate of the records [1/s].
 inline constexpr int kSampleRate = 7000;

@@ -1,10 +1,9 @@
-#include "controller.hpp"
-
 #include <gmock/gmock.h>
 #include <poll.h>
 
 #include <array>
 #include <asio/buffer.hpp>
+#include <asio/ip/udp.hpp>
 #include <chrono>
 #include <initializer_list>
 #include <string>

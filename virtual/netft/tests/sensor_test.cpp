@@ -17,8 +17,8 @@ TEST(Sensor, GivesCountsOfItsUnits) {
     EXPECT_THAT(sensor.read(kLoad).counts,
                 ElementsAre(10'000'000, -20'000'000, 30'000'000, 1'000'000, -2'000'000, 3'000'000));
     Calibration imperial;
-    imperial.force_unit = forceUnits()[2];
-    imperial.torque_unit = torqueUnits()[5];
+    imperial.force_unit = kForceUnits[2];
+    imperial.torque_unit = kTorqueUnits[5];
     Sensor other(imperial);
     const auto counts = other.read(kLoad).counts;
     EXPECT_NEAR(counts[0], 10.0 / 4.4482216 * 1e6, 1.0);
@@ -29,9 +29,9 @@ TEST(Sensor, KnowsTheUnitsThatWeigh) {
     const auto sizeOf = [](std::span<const Unit> units, std::string_view name) {
         return std::ranges::find(units, name, &Unit::name)->size;
     };
-    EXPECT_DOUBLE_EQ(sizeOf(forceUnits(), "kgf"), 9.80665);
-    EXPECT_DOUBLE_EQ(sizeOf(forceUnits(), "gf"), 0.00980665);
-    EXPECT_DOUBLE_EQ(sizeOf(torqueUnits(), "kgf-cm"), 0.0980665);
+    EXPECT_DOUBLE_EQ(sizeOf(kForceUnits, "kgf"), 9.80665);
+    EXPECT_DOUBLE_EQ(sizeOf(kForceUnits, "gf"), 0.00980665);
+    EXPECT_DOUBLE_EQ(sizeOf(kTorqueUnits, "kgf-cm"), 0.0980665);
 }
 
 TEST(Sensor, IsZeroAtTheBias) {

@@ -73,7 +73,7 @@ TEST(Web, TellsWhatIsSet) {
 
 TEST(Web, TellsRatingsInItsUnits) {
     WebPages pages;
-    pages.calibration.force_unit = forceUnits()[1];
+    pages.calibration.force_unit = kForceUnits[1];
     EXPECT_EQ(pages.calibration.force_unit.name, "kN");
     const auto page = get("/netftapi2.xml", pages);
     EXPECT_THAT(page, HasSubstr("<cfgmr>0.065;0.065;0.2;5;5;5</cfgmr>"));
