@@ -1,26 +1,50 @@
-#include "controller.hpp"
+#include "metier/virtual_controller/controller.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <random>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "metier/virtual_controller/cycle_timer.hpp"
+#include "metier/virtual_controller/standing_time.hpp"
+#include "metier/virtual_controller/tcp_dialer.hpp"
+#include "robot_application.hpp"
 
 namespace metier::virtual_iiwa {
-
 namespace {
 
+using namespace virtual_controller;
 using namespace std::chrono_literals;
-using virtual_controller::InjectionHelp;
-using virtual_controller::TcpPeer;
+
+/// Options from the settings (README.md).
+struct Options {
+    std::string pc_address;
+    std::uint16_t pc_port = 12225;
+    Precision precision = Precision::single_precision;
+    bool redial = true;
+    double redial_delay = 1.0;    ///< [s]
+    double answer_delay = 0.002;  ///< [s]
+    double force_noise = 0.0;     ///< standard deviation [N], [Nm]
+    double torque_noise = 0.0;    ///< standard deviation of the axes' torque [Nm]
+    motion::JointVector start;    ///< joint position when power comes [rad]
+};
 
 constexpr std::size_t kAxes = 7;
 // Largest number of bytes that a PC may send while the application is busy; more ends the
 // application.
 constexpr std::size_t kLongestBacklog = 65'536;
 
-Options readOptions(const virtual_controller::ControllerRequest& request) {
+Options readOptions(const ControllerRequest& request) {
     const auto& settings = request.settings;
     Options options;
     options.pc_address = settings.textOr("pc_address", request.address);
@@ -46,55 +70,83 @@ int toCycles(double seconds) {
     return static_cast<int>(std::lround(seconds / kCycleSeconds));
 }
 
-}  // namespace
+/// A Sunrise cabinet whose robot application connects to the PC.
+class IiwaController final : public Controller {
+public:
+    IiwaController(const ControllerRequest& request, Options options);
+    /// Makes the dialer, which connects to the PC. Errors: those of TcpDialer::create().
+    Result<void> dial(const ControllerRequest& request);
 
-Result<std::unique_ptr<IiwaController>> IiwaController::start(
-    const virtual_controller::ControllerRequest& request) {
-    if (request.model == nullptr || request.model->axisCount() != kAxes) {
-        return fail(Errc::invalid_argument,
-                    request.name + ": an iiwa needs the model of an arm with 7 axes");
-    }
-    auto options = readOptions(request);
-    METIER_TRY(request.settings.finish());
-    auto controller =
-        std::unique_ptr<IiwaController>(new IiwaController(request, std::move(options)));
-    METIER_TRY(controller->makeDialer(request));
-    return controller;
-}
+    std::vector<InjectionHelp> injections() const override { return injections_; }
+    nlohmann::ordered_json state() const override;
+    void restart() override;
 
-IiwaController::IiwaController(const virtual_controller::ControllerRequest& request,
-                               Options options)
+private:
+    std::vector<InjectionHelp> makeInjections();
+    void failMotion();
+    void connected(TcpPeer& peer);
+    void received(std::span<const std::byte> bytes);
+    void takeCommands();
+    void answer();
+    void endApplication();
+    /// Errors: invalid_argument, no mode of a cabinet.
+    Result<void> selectMode(const std::string& mode);
+    void redialLater();
+    void cycle();
+    void stepArm();
+    void stepAnswer();
+
+    const Options options_;
+    const std::vector<InjectionHelp> injections_ = makeInjections();
+    WorldLink& world_;
+    Cabinet cabinet_;
+    double time_ = 0.0;  ///< the cabinet's own, by its cycles [s]
+    std::optional<RobotApplication> application_;
+    TcpPeer* pc_ = nullptr;
+    std::vector<std::byte> received_;  // not yet read by the application
+    std::optional<RobotApplication::Answer> due_;
+    int answer_cycles_ = 0;  // cycles until the answer is sent
+    int redial_cycles_ = 0;  // cycles until the next connection attempt; 0: none
+    bool silent_ = false;
+    std::uint64_t answers_ = 0;
+    std::string last_failure_;
+    std::mt19937 random_{1};
+    std::normal_distribution<double> normal_;
+    std::unique_ptr<TcpDialer> dialer_;
+    StandingTime standing_;
+    CycleTimer timer_;
+};
+
+IiwaController::IiwaController(const ControllerRequest& request, Options options)
     : options_(std::move(options)),
       world_(request.world),
       cabinet_{.arm = Arm(*request.model, options_.start),
                .torque_noise = motion::JointVector(kAxes)},
       timer_(request.context, 1ms, [this] { cycle(); }) {}
 
-Result<void> IiwaController::makeDialer(const virtual_controller::ControllerRequest& request) {
-    auto dialer = virtual_controller::TcpDialer::create(
-        request.context, {request.address, options_.pc_address, options_.pc_port}, request.faults,
-        {.peer = {.on_connected = [this](TcpPeer& peer) { connected(peer); },
-                  .on_data =
-                      [this](TcpPeer& peer, std::span<const std::byte> bytes) {
-                          if (&peer == pc_) {
-                              received(bytes);
-                          }
-                      },
-                  .on_closed =
-                      [this](TcpPeer& peer) {
-                          if (&peer == pc_) {
-                              pc_ = nullptr;
-                              endApplication();
-                          }
-                      }},
-         .on_failed = [this](const Error& error) {
-             last_failure_ = error.message;
-             redialLater();
-         }});
-    if (!dialer) {
-        return fail(dialer.error());
-    }
-    dialer_ = std::move(*dialer);
+Result<void> IiwaController::dial(const ControllerRequest& request) {
+    METIER_ASSIGN(
+        dialer_,
+        TcpDialer::create(request.context, {request.address, options_.pc_address, options_.pc_port},
+                          request.faults,
+                          {.peer = {.on_connected = [this](TcpPeer& peer) { connected(peer); },
+                                    .on_data =
+                                        [this](TcpPeer& peer, std::span<const std::byte> bytes) {
+                                            if (&peer == pc_) {
+                                                received(bytes);
+                                            }
+                                        },
+                                    .on_closed =
+                                        [this](TcpPeer& peer) {
+                                            if (&peer == pc_) {
+                                                pc_ = nullptr;
+                                                endApplication();
+                                            }
+                                        }},
+                           .on_failed = [this](const Error& error) {
+                               last_failure_ = error.message;
+                               redialLater();
+                           }}));
     dialer_->dial();
     return {};
 }
@@ -189,7 +241,7 @@ void IiwaController::stepArm() {
     if (application_) {
         application_->step(end);
     }
-    virtual_controller::WorldReport report;
+    WorldReport report;
     time_ += kCycleSeconds;
     report.time = time_;
     report.base_from_flange = cabinet_.arm.model().kinematics().forward(cabinet_.arm.position());
@@ -222,17 +274,43 @@ void IiwaController::restart() {
     redialLater();
 }
 
-std::vector<InjectionHelp> IiwaController::injections() const {
+std::vector<InjectionHelp> IiwaController::makeInjections() {
     return {
-        {"emergency-stop", "the button is pressed: the motion ends, the robot is not ready"},
-        {"release-emergency-stop", "the button is released"},
-        {"protective-stop", "the motion fails: error -14, -13 if it is synchronous"},
-        {"limit", "an axis is beyond its limit: the motion fails; not ready until `ready`"},
-        {"not-ready", "the enabling signal goes: the motion ends; not ready until `ready`"},
-        {"ready", "ends `limit` and `not-ready`"},
-        {"operating-mode", "AUT, T1 or T2: another one ends the motion; ready in AUT only"},
-        {"end-application", "the robot application ends, as by the operator's key"},
+        {"emergency-stop", "the button is pressed: the motion ends, the robot is not ready",
+         always([this] {
+             cabinet_.emergency_stop = true;
+             cabinet_.arm.brake(Arm::End::cancelled);
+         })},
+        {"release-emergency-stop", "the button is released",
+         always([this] { cabinet_.emergency_stop = false; })},
+        {"protective-stop", "the motion fails: error -14, -13 if it is synchronous",
+         always([this] { failMotion(); })},
+        {"limit", "an axis is beyond its limit: the motion fails; not ready until `ready`",
+         always([this] {
+             cabinet_.limit_violated = true;
+             failMotion();
+         })},
+        {"not-ready", "the enabling signal goes: the motion ends; not ready until `ready`",
+         always([this] {
+             cabinet_.enabled = false;
+             cabinet_.arm.brake(Arm::End::cancelled);
+         })},
+        {"ready", "ends `limit` and `not-ready`", always([this] {
+             cabinet_.enabled = true;
+             cabinet_.limit_violated = false;
+         })},
+        {"operating-mode", "AUT, T1 or T2: another one ends the motion; ready in AUT only",
+         [this](const std::string& mode) { return selectMode(mode); }},
+        {"end-application", "the robot application ends, as by the operator's key",
+         always([this] { endApplication(); })},
     };
+}
+
+void IiwaController::failMotion() {
+    if (application_) {
+        application_->fail();
+    }
+    cabinet_.arm.brake(Arm::End::failed);
 }
 
 /// Selects a mode. The enabling switch is never pressed, so T1 and T2 allow no motion.
@@ -243,36 +321,6 @@ Result<void> IiwaController::selectMode(const std::string& mode) {
     }
     cabinet_.automatic = mode == "AUT";
     cabinet_.arm.brake(Arm::End::cancelled);
-    return {};
-}
-
-Result<void> IiwaController::inject(const virtual_controller::Injection& injection) {
-    const auto& name = injection.name;
-    auto& arm = cabinet_.arm;
-    if (name == "emergency-stop") {
-        cabinet_.emergency_stop = true;
-        arm.brake(Arm::End::cancelled);
-    } else if (name == "release-emergency-stop") {
-        cabinet_.emergency_stop = false;
-    } else if (name == "protective-stop" || name == "limit") {
-        cabinet_.limit_violated |= name == "limit";
-        if (application_) {
-            application_->fail();
-        }
-        arm.brake(Arm::End::failed);
-    } else if (name == "not-ready") {
-        cabinet_.enabled = false;
-        arm.brake(Arm::End::cancelled);
-    } else if (name == "ready") {
-        cabinet_.enabled = true;
-        cabinet_.limit_violated = false;
-    } else if (name == "operating-mode") {
-        return selectMode(injection.value);
-    } else if (name == "end-application") {
-        endApplication();
-    } else {
-        return fail(Errc::not_found, fmt::format("an iiwa knows no injection \"{}\"", name));
-    }
     return {};
 }
 
@@ -302,6 +350,19 @@ nlohmann::ordered_json IiwaController::state() const {
     return state;
 }
 
+Result<std::unique_ptr<Controller>> start(const ControllerRequest& request) {
+    if (request.model == nullptr || request.model->axisCount() != kAxes) {
+        return fail(Errc::invalid_argument,
+                    request.name + ": an iiwa needs the model of an arm with 7 axes");
+    }
+    auto options = readOptions(request);
+    METIER_TRY(request.settings.finish());
+    auto controller = std::make_unique<IiwaController>(request, std::move(options));
+    METIER_TRY(controller->dial(request));
+    return controller;
+}
+
+}  // namespace
 }  // namespace metier::virtual_iiwa
 
 namespace metier::virtual_controller {
@@ -309,9 +370,7 @@ namespace metier::virtual_controller {
 ControllerType iiwaController();
 ControllerType iiwaController() {
     return {"iiwa", "KUKA LBR iiwa: a cabinet whose robot application (libiiwa) dials the PC",
-            [](const ControllerRequest& request) -> Result<std::unique_ptr<Controller>> {
-                return virtual_iiwa::IiwaController::start(request);
-            }};
+            virtual_iiwa::start};
 }
 
 }  // namespace metier::virtual_controller

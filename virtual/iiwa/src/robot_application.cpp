@@ -4,9 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "impedance.hpp"
-#include "metier/base/numbers.hpp"
-
 namespace metier::virtual_iiwa {
 
 namespace {
@@ -50,6 +47,16 @@ bool stopsFirst(int code) {
 }
 
 }  // namespace
+
+JointVector Cabinet::externalTorque() const {
+    const auto jacobian = arm.model().kinematics().jacobian(arm.position());
+    const auto flange = arm.model().kinematics().forward(arm.position());
+    Eigen::Matrix<double, 6, 1> base_wrench;
+    base_wrench << flange.rotation * wrench.force, flange.rotation * wrench.torque;
+    JointVector torque = torque_noise;
+    torque.view() += jacobian.transpose() * base_wrench;
+    return torque;
+}
 
 // ---- commands ----------------------------------------------------------------------------------
 
@@ -199,25 +206,11 @@ bool RobotApplication::setLimit(int code, double value) {
     if (code <= 203 ? !within(value, 0.0, 1.0) : !(value > 0.0 && std::isfinite(value))) {
         return refuse(ErrorCode::value);
     }
-    switch (code) {
-        case 201:
-            limits_.joint_velocity = value;
-            break;
-        case 202:
-            limits_.joint_acceleration = value;
-            break;
-        case 203:
-            limits_.joint_jerk = value;
-            break;
-        case 204:
-            limits_.velocity = value * kMillimetre;
-            break;
-        case 205:
-            limits_.acceleration = value * kMillimetre;
-            break;
-        default:
-            limits_.jerk = value * kMillimetre;
-    }
+    constexpr std::array kLimits{&MotionLimits::joint_velocity, &MotionLimits::joint_acceleration,
+                                 &MotionLimits::joint_jerk,     &MotionLimits::velocity,
+                                 &MotionLimits::acceleration,   &MotionLimits::jerk};
+    limits_.*kLimits.at(static_cast<std::size_t>(code - 201)) =
+        code <= 203 ? value : value * kMillimetre;
     return true;
 }
 
@@ -308,8 +301,7 @@ void RobotApplication::step(std::optional<Arm::End> end) {
     }
     const bool failed = *end == Arm::End::failed || (waiting_ && *end == Arm::End::cancelled);
     if (failed) {
-        error_ = waiting_ ? ErrorCode::synchronous_motion : ErrorCode::asynchronous_motion;
-        status_ = status_ && !waiting_;
+        fail();
     }
     waiting_ = false;
 }

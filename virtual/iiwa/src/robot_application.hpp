@@ -5,10 +5,35 @@
 #include <map>
 #include <optional>
 
-#include "cabinet.hpp"
+#include "arm.hpp"
+#include "metier/motion/twist.hpp"
 #include "wire.hpp"
 
 namespace metier::virtual_iiwa {
+
+/// The cabinet that the robot application runs on.
+struct Cabinet {
+    Arm arm;
+    motion::Wrench wrench{};           ///< external wrench on the flange, in the flange frame
+    motion::JointVector torque_noise;  ///< noise of this cycle [Nm]
+    bool emergency_stop = false;
+    bool enabled = true;
+    bool limit_violated = false;
+    bool automatic = true;  ///< automatic mode; else T1 or T2, without a person at the enabling
+                            ///< switch
+
+    bool ready() const noexcept {
+        return !emergency_stop && enabled && !limit_violated && automatic;
+    }
+    /// External torque on the axes [Nm].
+    motion::JointVector externalTorque() const;
+};
+
+/// Value of an impedance or oscillation setting (221 to 243) in the cabinet after a command with
+/// `arguments`: an entry out of its range stays as `before`, a negative limit of 224 to 226 means
+/// no limit.
+std::array<double, 7> impedanceAfter(int code, const std::array<double, 7>& before,
+                                     const std::array<double, 7>& arguments) noexcept;
 
 /// The robot application: what each command of the PC does.
 ///

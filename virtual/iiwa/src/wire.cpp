@@ -1,60 +1,45 @@
 #include "wire.hpp"
 
-#include <bit>
+#include <algorithm>
 
 #include "metier/base/numbers.hpp"
 #include "metier/motion/frame.hpp"
+#include "metier/virtual_controller/wire_bytes.hpp"
 
 namespace metier::virtual_iiwa {
 
 namespace {
 
-std::size_t numberSize(Precision precision) noexcept {
-    return precision == Precision::single_precision ? 4 : 8;
-}
-
-double decodeNumber(std::span<const std::byte> bytes, Precision precision) noexcept {
-    std::uint64_t bits = 0;
-    for (const std::byte byte : bytes) {
-        bits = bits << 8U | std::to_integer<std::uint64_t>(byte);
-    }
-    return precision == Precision::single_precision
-               ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
-               : std::bit_cast<double>(bits);
-}
-
-void appendNumber(std::vector<std::byte>& bytes, double number, Precision precision) {
-    const auto bits = precision == Precision::single_precision
-                          ? std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(number))}
-                          : std::bit_cast<std::uint64_t>(number);
-    for (auto left = numberSize(precision); left > 0; --left) {
-        bytes.push_back(static_cast<std::byte>(bits >> 8U * (left - 1) & 0xFFU));
-    }
-}
+constexpr double kMillimetre = 1e-3;
 
 }  // namespace
 
 std::size_t commandSize(Precision precision) noexcept {
-    return 8 * numberSize(precision);
+    return 8 * (precision == Precision::single_precision ? sizeof(float) : sizeof(double));
 }
 
 Command decodeCommand(std::span<const std::byte> bytes, Precision precision) noexcept {
-    const auto size = numberSize(precision);
+    virtual_controller::ByteReader reader(bytes);
+    const auto next = [&] {
+        return precision == Precision::single_precision ? double{reader.get<float>()}
+                                                        : reader.get<double>();
+    };
     Command command;
-    command.code = decodeNumber(bytes.first(size), precision);
-    for (std::size_t i = 0; i < command.arguments.size(); ++i) {
-        command.arguments[i] = decodeNumber(bytes.subspan((i + 1) * size, size), precision);
-    }
+    command.code = next();
+    std::ranges::generate(command.arguments, next);
     return command;
 }
 
 std::vector<std::byte> encodeState(const StateNumbers& state, Precision precision) {
-    std::vector<std::byte> bytes;
-    bytes.reserve(state.size() * numberSize(precision));
+    virtual_controller::ByteWriter bytes;
     for (const double number : state) {
-        appendNumber(bytes, number, precision);
+        if (precision == Precision::single_precision) {
+            bytes.put(static_cast<float>(number));
+        } else {
+            bytes.put(number);
+        }
     }
-    return bytes;
+    return bytes.content();
 }
 
 motion::Pose toPose(const std::array<double, 6>& xyzabc) {

@@ -1,5 +1,3 @@
-#include "controller.hpp"
-
 #include <gmock/gmock.h>
 
 #include <array>
