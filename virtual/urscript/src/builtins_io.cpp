@@ -7,14 +7,13 @@ constexpr int kStandardDigital = 8;       // then come the configurable ones
 constexpr int kConfigurableDigital = 16;  // then come those of the tool
 constexpr int kStandardAnalog = 2;        // then come those of the tool
 
-struct DigitalPin {
-    DigitalPort port;
+template <typename Port>
+struct Pin {
+    Port port;
     int index;
 };
-struct AnalogPin {
-    AnalogPort port;
-    int index;
-};
+using DigitalPin = Pin<DigitalPort>;
+using AnalogPin = Pin<AnalogPort>;
 
 /// The pin that a number means that counts all ports.
 DigitalPin digitalPin(int n) {
@@ -30,13 +29,8 @@ AnalogPin analogPin(int n) {
                                 : AnalogPin{AnalogPort::standard, n};
 }
 
-template <DigitalPort port>
-DigitalPin pinOf(int n) {
-    return {port, n};
-}
-
-template <AnalogPort port>
-AnalogPin pinOf(int n) {
+template <auto port>
+Pin<decltype(port)> pinOf(int n) {
     return {port, n};
 }
 

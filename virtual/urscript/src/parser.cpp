@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace metier::urscript {
@@ -29,6 +30,36 @@ bool endsBlock(Kind kind) {
 }
 
 }  // namespace
+
+const Token& TokenReader::peek(std::size_t ahead) const {
+    return tokens_[std::min(next_ + ahead, tokens_.size() - 1)];
+}
+
+const Token& TokenReader::take() {
+    const Token& token = peek();
+    ++next_;
+    return token;
+}
+
+bool TokenReader::takeIf(Kind kind) {
+    const bool found = peek().kind == kind;
+    next_ += found ? 1 : 0;
+    return found;
+}
+
+Result<void> TokenReader::expect(Kind kind, std::string_view what) {
+    return takeIf(kind) ? Result<void>() : unexpected(what);
+}
+
+tl::unexpected<Error> TokenReader::unexpected(std::string_view wanted) const {
+    const Token& token = peek();
+    if (token.kind == Kind::end_of_text || token.kind == Kind::new_line) {
+        return failAt(token.at, fmt::format("{} is missing", wanted));
+    }
+    constexpr std::size_t kMostShown = 40;
+    return failAt(token.at, fmt::format("{} is missing before '{}'", wanted,
+                                        token.text.substr(0, kMostShown)));
+}
 
 // A program without a name is a block that the end of the text closes.
 Parser::Parser(const std::vector<Token>& tokens)
