@@ -13,12 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace metier::virtual_ur;
     RobotState state;
     ControlInputs control;
-    RtdeShared shared{{3, 15, 8, 0},
-                      125.0,
-                      {state.inputs, control},
-                      [](const auto&) {},
-                      [](const std::string&) {},
-                      {}};
+    RtdeShared shared{{3, 15, 8, 0}, 125.0, {state.inputs, control}, [](const auto&) {}, {}};
     FakePeer peer;
     const auto bytes = std::as_bytes(std::span(data, size));
     {
@@ -34,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             package.put(static_cast<std::uint16_t>(size + 3))
                 .put(static_cast<std::uint8_t>(*types))
                 .bytes(bytes);
-            (void)framed.receive(std::move(package).take());
+            (void)framed.receive(package.content());
             framed.cycle(state);
         }
     }

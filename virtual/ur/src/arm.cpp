@@ -30,12 +30,6 @@ device::JointArray toArray(const Vector6& values) {
     return device::JointArray(std::span(values));
 }
 
-Vector6 toVector6(const device::JointArray& values) {
-    Vector6 result{};
-    std::copy(values.begin(), values.end(), result.begin());
-    return result;
-}
-
 ArmViolation toViolation(const joint_simulator::Violation& violation) {
     const bool position = violation.quantity == joint_simulator::Violation::Quantity::position;
     return {position ? kJointLimit : kOffPath, toText(violation)};

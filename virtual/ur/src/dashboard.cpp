@@ -37,138 +37,134 @@ std::string answerOr(const Result<void>& result, std::string_view good, std::str
     return std::string(result ? good : bad);
 }
 
+/// Effect of a command, with the series if only one has it.
+enum class Use : std::uint8_t { asks, asks_cb3, asks_e_series, changes };
+
 }  // namespace
 
 /// One thing a client can ask for.
 struct Dashboard::Command {
-    enum class On : std::uint8_t { both, cb3, e_series };
-    enum class Effect : std::uint8_t { asks, changes };
-
     std::string_view name;
-    On on = On::both;
-    Effect effect = Effect::asks;
+    Use use;
     std::string (*answer)(Dashboard&, std::string_view argument);
 };
 
 Dashboard::Dashboard(Robot& robot, std::function<void(std::string)> log)
     : robot_(robot), log_(std::move(log)) {}
 
-// Names, series and answers of everything that takes a line.
+// Names, answers and series of everything that takes a line.
 const std::vector<Dashboard::Command> Dashboard::kCommands{
-    {"running", Command::On::both, Command::Effect::asks,
+    {"running", Use::asks,
      [](Dashboard& d, std::string_view) {
          const auto state = d.robot_.programs().state();
          const bool running = state == RuntimeState::playing || state == RuntimeState::resuming;
          return fmt::format("Program running: {}", yesNo(running));
      }},
-    {"robotmode", Command::On::both, Command::Effect::asks,
+    {"robotmode", Use::asks,
      [](Dashboard& d, std::string_view) {
          return "Robotmode: " + toText(d.robot_.modes().robotMode());
      }},
-    {"safetymode", Command::On::both, Command::Effect::asks,
+    {"safetymode", Use::asks,
      [](Dashboard& d, std::string_view) {
          return "Safetymode: " + toText(d.robot_.modes().safetyMode());
      }},
-    {"safetystatus", Command::On::e_series, Command::Effect::asks,
+    {"safetystatus", Use::asks_e_series,
      [](Dashboard& d, std::string_view) {
          return "Safetystatus: " + toText(d.robot_.modes().safetyMode());
      }},
-    {"programState", Command::On::both, Command::Effect::asks,
-     [](Dashboard& d, std::string_view) { return d.programState(); }},
-    {"PolyscopeVersion", Command::On::both, Command::Effect::asks,
+    {"programState", Use::asks, [](Dashboard& d, std::string_view) { return d.programState(); }},
+    {"PolyscopeVersion", Use::asks,
      [](Dashboard& d, std::string_view) {
          return fmt::format("URSoftware {} ({})", d.softwareVersion(),
                             d.robot_.options().description.build_date.substr(0, 10));
      }},
-    {"version", Command::On::e_series, Command::Effect::asks,
+    {"version", Use::asks_e_series,
      [](Dashboard& d, std::string_view) { return d.softwareVersion(); }},
-    {"power on", Command::On::both, Command::Effect::changes,
+    {"power on", Use::changes,
      [](Dashboard& d, std::string_view) {
          return answerOr(d.robot_.powerOn(), "Powering on", "Failed to execute: power on");
      }},
-    {"power off", Command::On::both, Command::Effect::changes,
+    {"power off", Use::changes,
      [](Dashboard& d, std::string_view) {
          d.robot_.powerOff();
          return std::string("Powering off");
      }},
-    {"brake release", Command::On::both, Command::Effect::changes,
+    {"brake release", Use::changes,
      [](Dashboard& d, std::string_view) {
          return answerOr(d.robot_.releaseBrakes(), "Brake releasing",
                          "Failed to execute: brake release");
      }},
-    {"play", Command::On::both, Command::Effect::changes,
-     [](Dashboard& d, std::string_view) { return d.play(); }},
-    {"pause", Command::On::both, Command::Effect::changes,
-     [](Dashboard& d, std::string_view) { return d.pause(); }},
-    {"stop", Command::On::both, Command::Effect::changes,
+    {"play", Use::changes,
+     [](Dashboard& d, std::string_view) {
+         return answerOr(d.robot_.play(), "Starting program", "Failed to execute: play");
+     }},
+    {"pause", Use::changes, [](Dashboard& d, std::string_view) { return d.pause(); }},
+    {"stop", Use::changes,
      [](Dashboard& d, std::string_view) {
          d.robot_.programs().stop();
          return std::string("Stopped");
      }},
-    {"load installation", Command::On::both, Command::Effect::changes,
+    {"load installation", Use::changes,
      [](Dashboard&, std::string_view file) {
          return fmt::format("{}: {}", file.empty() ? "File not found" : "Loading installation",
                             file.substr(0, kMostEchoed));
      }},
-    {"load", Command::On::both, Command::Effect::changes,
-     [](Dashboard& d, std::string_view file) { return d.load(file); }},
-    {"get loaded program", Command::On::both, Command::Effect::asks,
+    {"load", Use::changes, [](Dashboard& d, std::string_view file) { return d.load(file); }},
+    {"get loaded program", Use::asks,
      [](Dashboard& d, std::string_view) {
          return d.robot_.programs().loaded() ? "Loaded program: " + d.robot_.programs().loadedName()
                                              : std::string("No program loaded");
      }},
-    {"isProgramSaved", Command::On::both, Command::Effect::asks,
-     [](Dashboard& d, std::string_view) { return d.isProgramSaved(); }},
-    {"popup", Command::On::both, Command::Effect::asks,
+    {"isProgramSaved", Use::asks,
+     [](Dashboard& d, std::string_view) { return "true " + d.robot_.programs().loadedName(); }},
+    {"popup", Use::asks,
      [](Dashboard& d, std::string_view text) {
          d.robot_.showPopup(std::string(text));
          return std::string("showing popup");
      }},
-    {"close popup", Command::On::both, Command::Effect::asks,
+    {"close popup", Use::asks,
      [](Dashboard& d, std::string_view) {
          d.robot_.closePopup();
          return std::string("closing popup");
      }},
-    {"close safety popup", Command::On::both, Command::Effect::asks,
+    {"close safety popup", Use::asks,
      [](Dashboard&, std::string_view) { return std::string("closing safety popup"); }},
-    {"unlock protective stop", Command::On::both, Command::Effect::changes,
+    {"unlock protective stop", Use::changes,
      [](Dashboard& d, std::string_view) { return d.unlock(); }},
-    {"restart safety", Command::On::both, Command::Effect::changes,
+    {"restart safety", Use::changes,
      [](Dashboard& d, std::string_view) {
          d.robot_.restartSafety();
          return std::string("Restarting safety");
      }},
-    {"is in remote control", Command::On::e_series, Command::Effect::asks,
+    {"is in remote control", Use::asks_e_series,
      [](Dashboard& d, std::string_view) {
          return std::string(yesNo(d.robot_.control() == Control::remote));
      }},
-    {"get robot model", Command::On::both, Command::Effect::asks,
+    {"get robot model", Use::asks,
      [](Dashboard& d, std::string_view) { return d.robot_.options().robot_model; }},
-    {"get serial number", Command::On::both, Command::Effect::asks,
+    {"get serial number", Use::asks,
      [](Dashboard& d, std::string_view) { return d.robot_.options().serial_number; }},
-    {"addToLog", Command::On::both, Command::Effect::asks,
-     [](Dashboard& d, std::string_view text) { return d.addToLog(text); }},
-    {"set operational mode", Command::On::e_series, Command::Effect::asks,
+    {"addToLog", Use::asks, [](Dashboard& d, std::string_view text) { return d.addToLog(text); }},
+    {"set operational mode", Use::asks_e_series,
      [](Dashboard& d, std::string_view mode) { return d.setOperationalMode(mode); }},
-    {"get operational mode", Command::On::e_series, Command::Effect::asks,
+    {"get operational mode", Use::asks_e_series,
      [](Dashboard& d, std::string_view) { return d.operational_mode_; }},
-    {"clear operational mode", Command::On::e_series, Command::Effect::asks,
+    {"clear operational mode", Use::asks_e_series,
      [](Dashboard& d, std::string_view) {
          return fmt::format(
              "No longer controlling the operational mode. Current operational mode: '{}'.",
              std::exchange(d.operational_mode_, "NONE"));
      }},
-    {"setUserRole", Command::On::cb3, Command::Effect::asks,
+    {"setUserRole", Use::asks_cb3,
      [](Dashboard& d, std::string_view role) { return d.setUserRole(role); }},
-    {"getUserRole", Command::On::cb3, Command::Effect::asks,
-     [](Dashboard& d, std::string_view) { return d.user_role_; }},
-    {"saveLog", Command::On::both, Command::Effect::asks,
+    {"getUserRole", Use::asks_cb3, [](Dashboard& d, std::string_view) { return d.user_role_; }},
+    {"saveLog", Use::asks,
      [](Dashboard&, std::string_view) { return std::string("Log saved to disk"); }},
-    {"generate flight report", Command::On::both, Command::Effect::asks,
+    {"generate flight report", Use::asks,
      [](Dashboard& d, std::string_view) {
          return fmt::format("Flight Report generated with id:{}", ++d.flight_reports_);
      }},
-    {"generate support file", Command::On::both, Command::Effect::asks,
+    {"generate support file", Use::asks,
      [](Dashboard& d, std::string_view folder) { return d.generateSupportFile(folder); }},
 };
 
@@ -186,10 +182,10 @@ Dashboard::Answer Dashboard::answer(std::string_view line) {
         const bool named =
             asked.starts_with(command.name) &&
             (asked.size() == command.name.size() || asked[command.name.size()] == ' ');
-        if (!named || command.on == (e_series ? Command::On::cb3 : Command::On::e_series)) {
+        if (!named || command.use == (e_series ? Use::asks_cb3 : Use::asks_e_series)) {
             continue;
         }
-        if (command.effect == Command::Effect::changes && !robot_.commandsAllowed()) {
+        if (command.use == Use::changes && !robot_.commandsAllowed()) {
             return {std::string(kLocalControl)};
         }
         return {command.answer(*this, trimmed(asked.substr(command.name.size())))};
@@ -210,10 +206,6 @@ std::string Dashboard::load(std::string_view file) {
     }
     const auto loaded = robot_.programs().load(script, name.filename().string());
     return fmt::format("{}: {}", loaded ? "Loading program" : "Error while loading program", file);
-}
-
-std::string Dashboard::play() {
-    return answerOr(robot_.play(), "Starting program", "Failed to execute: play");
 }
 
 std::string Dashboard::pause() {
@@ -260,10 +252,6 @@ std::string Dashboard::generateSupportFile(std::string_view folder) const {
     const auto file = std::filesystem::path(std::string(folder.substr(0, kMostEchoed))) /
                       ("ursupport_" + robot_.options().serial_number + ".zip");
     return "Completed successfully:" + file.string();
-}
-
-std::string Dashboard::isProgramSaved() const {
-    return "true " + robot_.programs().loadedName();
 }
 
 std::string Dashboard::programState() const {

@@ -32,14 +32,12 @@ private:
     static const std::vector<Command> kCommands;
 
     std::string load(std::string_view file);
-    std::string play();
     std::string pause();
     std::string unlock();
     std::string addToLog(std::string_view text);
     std::string setOperationalMode(std::string_view mode);
     std::string setUserRole(std::string_view role);
     std::string generateSupportFile(std::string_view folder) const;
-    std::string isProgramSaved() const;
     std::string programState() const;
     std::string softwareVersion() const;
 

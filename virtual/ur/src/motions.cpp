@@ -3,12 +3,16 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "metier/motion/rotation.hpp"
+#include "metier/virtual_controller/trapezoid.hpp"
 
 namespace metier::virtual_ur {
 
 namespace {
+
+using virtual_controller::Trapezoid;
 
 // Damping of the inverse Jacobian: keeps it finite in a singular place.
 constexpr double kDamping = 1e-6;
@@ -22,76 +26,34 @@ constexpr double kOnTheSpot = 1e-6;
 // A duration is over when less of it is left than this: sums of steps are not exact [s].
 constexpr double kRounding = 1e-6;
 
-double largest(const Vector6& values) {
-    double result = 0.0;
-    for (const double value : values) {
-        result = std::max(result, std::abs(value));
-    }
-    return result;
+/// A path with these speeds. A time counts alone: a client may leave the speeds zero.
+Trapezoid profileOf(double length, const PathSpeed& speed) {
+    const Trapezoid fastest(length, std::max(speed.velocity, 1e-9),
+                            std::max(speed.acceleration, 1e-9));
+    return speed.duration > 0.0 ? fastest.lasting(speed.duration) : fastest;
 }
 
-/// Distance along a path from rest to rest: accelerate, drive, brake.
-class Trapezoid {
-public:
-    Trapezoid(double length, const PathSpeed& speed) : length_(length) {
-        if (speed.duration > 0.0) {
-            // A time counts alone: a client may leave the speeds zero.
-            duration_ = speed.duration;
-            ramp_ = duration_ / 3.0;
-            velocity_ = length_ / (duration_ - ramp_);
-            acceleration_ = velocity_ / ramp_;
-            return;
-        }
-        velocity_ = std::max(speed.velocity, 1e-9);
-        acceleration_ = std::max(speed.acceleration, 1e-9);
-        ramp_ = velocity_ / acceleration_;
-        if (length_ < velocity_ * ramp_) {
-            ramp_ = std::sqrt(length_ / acceleration_);
-            velocity_ = acceleration_ * ramp_;
-        }
-        duration_ = velocity_ > 0.0 ? ramp_ + length_ / velocity_ : 0.0;
-    }
-    /// \param time [s] since the start
-    double at(double time) const {
-        const double t = std::clamp(time, 0.0, duration_);
-        const double left = duration_ - t;
-        if (t < ramp_) {
-            return 0.5 * acceleration_ * t * t;
-        }
-        return left < ramp_ ? length_ - 0.5 * acceleration_ * left * left
-                            : velocity_ * (t - 0.5 * ramp_);
-    }
-    bool over(double time) const { return time >= duration_ - kRounding; }
-
-private:
-    double length_;
-    double velocity_ = 0.0;
-    double acceleration_ = 0.0;
-    double ramp_ = 0.0;
-    double duration_ = 0.0;
-};
+/// The values of `function` for each axis.
+template <typename Function>
+Vector6 combined(const Vector6& left, const Vector6& right, Function function) {
+    Vector6 result{};
+    std::transform(left.begin(), left.end(), right.begin(), result.begin(), function);
+    return result;
+}
 
 /// Changes every axis' velocity towards a target so that all reach it at the same time.
 Vector6 approach(const Vector6& from, const Vector6& to, double change) {
-    Vector6 way{};
-    for (std::size_t i = 0; i < kAxes; ++i) {
-        way[i] = to[i] - from[i];
-    }
+    const auto way = combined(to, from, std::minus<>());
     const double leading = largest(way);
-    const double share = leading > change ? change / leading : 1.0;
-    Vector6 result{};
-    for (std::size_t i = 0; i < kAxes; ++i) {
-        result[i] = share < 1.0 ? from[i] + share * way[i] : to[i];
+    if (leading <= change) {
+        return to;
     }
-    return result;
+    return combined(from, way,
+                    [share = change / leading](double f, double w) { return f + share * w; });
 }
 
 Vector6 moved(const Vector6& position, const Vector6& velocity, double step) {
-    Vector6 result{};
-    for (std::size_t i = 0; i < kAxes; ++i) {
-        result[i] = position[i] + velocity[i] * step;
-    }
-    return result;
+    return combined(position, velocity, [step](double p, double v) { return p + v * step; });
 }
 
 class SpeedJ final : public Motion {
@@ -142,9 +104,7 @@ std::optional<Vector6> axesAt(const ToolKinematics& tool, const motion::Pose& ba
     if (solution.size() != kAxes) {
         return std::nullopt;
     }
-    Vector6 result{};
-    std::copy(solution.begin(), solution.end(), result.begin());
-    return result;
+    return toVector6(solution);
 }
 
 class SpeedL final : public Motion {
@@ -186,21 +146,13 @@ private:
     bool reached_ = false;
 };
 
-double leadingDistance(const Vector6& start, const Vector6& target) {
-    Vector6 way{};
-    for (std::size_t i = 0; i < kAxes; ++i) {
-        way[i] = target[i] - start[i];
-    }
-    return largest(way);
-}
-
 class MoveJ final : public Motion {
 public:
     MoveJ(const Vector6& start, const Vector6& target, const PathSpeed& speed)
         : start_(start),
           target_(target),
-          length_(leadingDistance(start, target)),
-          profile_(length_, speed) {}
+          length_(largest(combined(target, start, std::minus<>()))),
+          profile_(profileOf(length_, speed)) {}
 
     std::optional<Vector6> next(const JointState&, double step) override {
         time_ += step;
@@ -208,13 +160,10 @@ public:
             return target_;
         }
         const double share = profile_.at(time_) / length_;
-        Vector6 result{};
-        for (std::size_t i = 0; i < kAxes; ++i) {
-            result[i] = start_[i] + share * (target_[i] - start_[i]);
-        }
-        return result;
+        return combined(start_, target_,
+                        [share](double from, double to) { return from + share * (to - from); });
     }
-    bool done() const override { return profile_.over(time_); }
+    bool done() const override { return time_ >= profile_.duration() - kRounding; }
 
 private:
     Vector6 start_;
@@ -232,7 +181,7 @@ public:
         double length = 0.0;
     };
     MoveL(const Line& line, const PathSpeed& speed, const ToolKinematics& tool)
-        : line_(line), profile_(line.length, speed), tool_(tool) {}
+        : line_(line), profile_(profileOf(line.length, speed)), tool_(tool) {}
 
     std::optional<Vector6> next(const JointState& now, double step) override {
         time_ += step;
@@ -244,7 +193,7 @@ public:
             motion::slerp(start.rotation, line_.target.rotation, share)};
         return axesAt(tool_, base_from_tool, now.position);
     }
-    bool done() const override { return profile_.over(time_); }
+    bool done() const override { return time_ >= profile_.duration() - kRounding; }
 
 private:
     Line line_;
@@ -352,6 +301,14 @@ std::unique_ptr<Motion> moveL(const Vector6& start, const motion::Pose& base_fro
         line.length = motion::rotationAngleBetween(line.start.rotation, line.target.rotation);
     }
     return std::make_unique<MoveL>(line, speed, tool);
+}
+
+double largest(const Vector6& values) {
+    double result = 0.0;
+    for (const double value : values) {
+        result = std::max(result, std::abs(value));
+    }
+    return result;
 }
 
 motion::Pose toPose(const Vector6& pose) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -116,5 +117,16 @@ std::unique_ptr<Motion> moveL(const Vector6& start, const motion::Pose& base_fro
 motion::Pose toPose(const Vector6& pose);
 Vector6 toVector(const motion::Pose& pose);
 motion::JointVector toJointVector(const Vector6& q);
+
+/// Six values of a list of another kind.
+template <typename List>
+Vector6 toVector6(const List& values) {
+    Vector6 result{};
+    std::copy_n(values.begin(), kAxes, result.begin());
+    return result;
+}
+
+/// Largest absolute value.
+double largest(const Vector6& values);
 
 }  // namespace metier::virtual_ur

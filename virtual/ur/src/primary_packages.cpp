@@ -21,17 +21,14 @@ constexpr std::int8_t kFromProgram = -3;
 
 constexpr MessageTime kNoTime = std::numeric_limits<MessageTime>::max();
 
-Bytes package(std::uint8_t type, ByteWriter body) {
-    const Bytes content = std::move(body).take();
+Bytes package(std::uint8_t type, const ByteWriter& body) {
     ByteWriter whole;
-    whole.put(static_cast<std::int32_t>(content.size() + 5)).put(type).bytes(content);
-    return std::move(whole).take();
+    whole.put(static_cast<std::int32_t>(body.content().size() + 5)).put(type);
+    return whole.bytes(body.content()).content();
 }
 
 ByteWriter message(MessageTime time, std::int8_t source, std::uint8_t kind) {
-    ByteWriter body;
-    body.put(time).put(source).put(kind);
-    return body;
+    return ByteWriter().put(time).put(source).put(kind);
 }
 
 std::uint8_t shortLength(std::string_view text) {
@@ -42,30 +39,25 @@ float toFloat(double value) {
     return static_cast<float>(value);
 }
 
-MessageTime microseconds(double seconds) {
-    return static_cast<MessageTime>(std::llround(seconds * 1e6));
-}
-
 Bytes robotMode(const RobotState& state) {
     const bool paused =
         state.runtime_state == RuntimeState::paused || state.runtime_state == RuntimeState::pausing;
     const bool stopped = state.runtime_state == RuntimeState::stopped;
-    ByteWriter body;
-    body.put(microseconds(state.timestamp))
-        .put(true)  // a robot is connected
-        .put(true)  // and enabled
-        .put(state.robot_mode > RobotMode::power_off)
-        .put(state.safety_mode == SafetyMode::robot_emergency_stop)
-        .put(state.safety_mode == SafetyMode::protective_stop)
-        .put(!stopped && !paused)
-        .put(paused)
-        .put(static_cast<std::int8_t>(state.robot_mode))
-        .put(std::uint8_t{0})  // control by position
-        .put(state.speed_slider)
-        .put(state.speed_scaling)
-        .put(1.0)  // the most the slider may be
-        .zeros(1);
-    return package(0, std::move(body));
+    return package(0, ByteWriter()
+                          .put(timeOf(state))
+                          .put(true)  // a robot is connected
+                          .put(true)  // and enabled
+                          .put(state.robot_mode > RobotMode::power_off)
+                          .put(state.safety_mode == SafetyMode::robot_emergency_stop)
+                          .put(state.safety_mode == SafetyMode::protective_stop)
+                          .put(!stopped && !paused)
+                          .put(paused)
+                          .put(static_cast<std::int8_t>(state.robot_mode))
+                          .put(std::uint8_t{0})  // control by position
+                          .put(state.speed_slider)
+                          .put(state.speed_scaling)
+                          .put(1.0)  // the most the slider may be
+                          .zeros(1));
 }
 
 Bytes joints(const RobotState& state) {
@@ -80,47 +72,43 @@ Bytes joints(const RobotState& state) {
             .put(0.0F)
             .put(static_cast<std::uint8_t>(state.joint_mode[i]));
     }
-    return package(1, std::move(body));
+    return package(1, body);
 }
 
 Bytes tool(const RobotState& state) {
-    ByteWriter body;
-    body.putAll(state.io.tool_analog_input_domains)
-        .putAll(state.io.tool_analog_inputs)
-        .put(toFloat(state.robot_voltage))
-        .put(static_cast<std::uint8_t>(state.io.tool_voltage))
-        .put(0.0F)  // current
-        .put(toFloat(state.joint_temperature.back()))
-        .put(static_cast<std::uint8_t>(state.joint_mode.back()));
-    return package(2, std::move(body));
+    return package(2, ByteWriter()
+                          .putAll(state.io.tool_analog_input_domains)
+                          .putAll(state.io.tool_analog_inputs)
+                          .put(toFloat(state.robot_voltage))
+                          .put(static_cast<std::uint8_t>(state.io.tool_voltage))
+                          .put(0.0F)  // current
+                          .put(toFloat(state.joint_temperature.back()))
+                          .put(static_cast<std::uint8_t>(state.joint_mode.back())));
 }
 
 Bytes masterboard(const RobotState& state) {
-    ByteWriter body;
-    body.put(static_cast<std::uint32_t>(state.io.digital_inputs))
-        .put(static_cast<std::uint32_t>(state.io.digital_outputs))
-        .putAll(state.io.analog_input_domains)
-        .putAll(state.io.analog_inputs)
-        .putAll(state.io.analog_output_domains)
-        .putAll(state.io.analog_outputs)
-        .put(toFloat(state.joint_temperature.front()))
-        .put(toFloat(state.robot_voltage))
-        .put(toFloat(state.robot_current))
-        .put(0.0F)  // current of the inputs and outputs
-        .put(static_cast<std::uint8_t>(state.safety_mode))
-        .put(std::uint8_t{0})  // not in reduced mode
-        .put(std::uint8_t{0})  // no injection moulding interface
-        .zeros(4)
-        .put(std::uint8_t{1})  // operational mode selector
-        .put(std::uint8_t{1})  // enabling device
-        .zeros(1);
-    return package(3, std::move(body));
+    return package(3, ByteWriter()
+                          .put(static_cast<std::uint32_t>(state.io.digital_inputs))
+                          .put(static_cast<std::uint32_t>(state.io.digital_outputs))
+                          .putAll(state.io.analog_input_domains)
+                          .putAll(state.io.analog_inputs)
+                          .putAll(state.io.analog_output_domains)
+                          .putAll(state.io.analog_outputs)
+                          .put(toFloat(state.joint_temperature.front()))
+                          .put(toFloat(state.robot_voltage))
+                          .put(toFloat(state.robot_current))
+                          .put(0.0F)  // current of the inputs and outputs
+                          .put(static_cast<std::uint8_t>(state.safety_mode))
+                          .put(std::uint8_t{0})  // not in reduced mode
+                          .put(std::uint8_t{0})  // no injection moulding interface
+                          .zeros(4)
+                          .put(std::uint8_t{1})  // operational mode selector
+                          .put(std::uint8_t{1})  // enabling device
+                          .zeros(1));
 }
 
 Bytes cartesian(const RobotState& state) {
-    ByteWriter body;
-    body.putAll(state.actual_tcp_pose).putAll(state.tcp_offset);
-    return package(4, std::move(body));
+    return package(4, ByteWriter().putAll(state.actual_tcp_pose).putAll(state.tcp_offset));
 }
 
 /// Denavit-Hartenberg parameters of a chain whose axes are all z.
@@ -159,7 +147,7 @@ Bytes kinematics(const DhTable& dh) {
         body.put(static_cast<std::uint32_t>(sum >> 32U ^ sum));
     }
     body.putAll(dh.theta).putAll(dh.a).putAll(dh.d).putAll(dh.alpha).put(std::uint32_t{1});
-    return package(5, std::move(body));
+    return package(5, body);
 }
 
 Bytes configuration(const RobotDescription& robot, const DhTable& dh) {
@@ -178,23 +166,23 @@ Bytes configuration(const RobotDescription& robot, const DhTable& dh) {
         .put(std::int32_t{e_series ? 5 : 3})  // control box
         .put(robot.robot_type)
         .put(std::int32_t{e_series ? 5 : 1});  // generation
-    return package(6, std::move(body));
+    return package(6, body);
 }
 
 Bytes force(const RobotState& state) {
-    ByteWriter body;
-    body.putAll(state.actual_tcp_force).put(0.0);
-    return package(7, std::move(body));
+    return package(7, ByteWriter().putAll(state.actual_tcp_force).put(0.0));
 }
 
 /// A part that is not documented, or has no meaning for a virtual arm.
 Bytes empty(std::uint8_t type, std::size_t content) {
-    ByteWriter body;
-    body.zeros(content);
-    return package(type, std::move(body));
+    return package(type, ByteWriter().zeros(content));
 }
 
 }  // namespace
+
+MessageTime timeOf(const RobotState& state) {
+    return static_cast<MessageTime>(std::llround(state.timestamp * 1e6));
+}
 
 Bytes robotStatePackage(const RobotState& state, const RobotDescription& robot) {
     const auto dh = dhOf(*robot.model);
@@ -213,71 +201,69 @@ Bytes robotStatePackage(const RobotState& state, const RobotDescription& robot) 
     if (robot.series == Series::e_series) {
         body.bytes(empty(11, 21)).bytes(empty(12, 7));
     }
-    return package(kRobotState, std::move(body));
+    return package(kRobotState, body);
 }
 
 Bytes versionMessage(const RobotDescription& robot) {
-    auto body = message(kNoTime, kFromController, 3);
-    body.put(shortLength(kName))
-        .text(kName)
-        .put(static_cast<std::uint8_t>(robot.version.major))
-        .put(static_cast<std::uint8_t>(robot.version.minor))
-        .put(static_cast<std::int32_t>(robot.version.bugfix))
-        .put(static_cast<std::int32_t>(robot.version.build))
-        .text(robot.build_date);
-    return package(kRobotMessage, std::move(body));
+    return package(kRobotMessage, message(kNoTime, kFromController, 3)
+                                      .put(shortLength(kName))
+                                      .text(kName)
+                                      .put(static_cast<std::uint8_t>(robot.version.major))
+                                      .put(static_cast<std::uint8_t>(robot.version.minor))
+                                      .put(static_cast<std::int32_t>(robot.version.bugfix))
+                                      .put(static_cast<std::int32_t>(robot.version.build))
+                                      .text(robot.build_date));
 }
 
 Bytes textMessage(MessageTime time, std::string_view text) {
-    auto body = message(time, kFromProgram, 0);
-    body.text(text);
-    return package(kRobotMessage, std::move(body));
+    return package(kRobotMessage, message(time, kFromProgram, 0).text(text));
 }
 
 Bytes keyMessage(MessageTime time, std::string_view title, std::string_view text) {
-    auto body = message(time, kFromProgram, 7);
-    body.put(std::int32_t{0}).put(std::int32_t{0}).put(shortLength(title)).text(title).text(text);
-    return package(kRobotMessage, std::move(body));
+    return package(kRobotMessage, message(time, kFromProgram, 7)
+                                      .put(std::int32_t{0})
+                                      .put(std::int32_t{0})
+                                      .put(shortLength(title))
+                                      .text(title)
+                                      .text(text));
 }
 
 Bytes safetyModeMessage(MessageTime time, SafetyMode mode) {
-    auto body = message(time, kFromController, 5);
-    body.put(std::int32_t{0})
-        .put(std::int32_t{0})
-        .put(static_cast<std::uint8_t>(mode))
-        .put(std::uint32_t{0})
-        .put(std::uint32_t{0});
-    return package(kRobotMessage, std::move(body));
+    return package(kRobotMessage, message(time, kFromController, 5)
+                                      .put(std::int32_t{0})
+                                      .put(std::int32_t{0})
+                                      .put(static_cast<std::uint8_t>(mode))
+                                      .put(std::uint32_t{0})
+                                      .put(std::uint32_t{0}));
 }
 
 Bytes runtimeExceptionMessage(MessageTime time, int line, int column, std::string_view text) {
-    auto body = message(time, kFromProgram, 10);
-    body.put(std::int32_t{line}).put(std::int32_t{column}).text(text);
-    return package(kRobotMessage, std::move(body));
+    return package(kRobotMessage, message(time, kFromProgram, 10)
+                                      .put(std::int32_t{line})
+                                      .put(std::int32_t{column})
+                                      .text(text));
 }
 
 Bytes errorCodeMessage(MessageTime time, const ErrorCode& error) {
-    auto body = message(time, kFromController, 6);
-    body.put(error.code)
-        .put(error.argument)
-        .put(static_cast<std::int32_t>(error.level))
-        .put(std::uint32_t{0})
-        .put(std::uint32_t{0})
-        .text(error.text);
-    return package(kRobotMessage, std::move(body));
+    return package(kRobotMessage, message(time, kFromController, 6)
+                                      .put(error.code)
+                                      .put(error.argument)
+                                      .put(static_cast<std::int32_t>(error.level))
+                                      .put(std::uint32_t{0})
+                                      .put(std::uint32_t{0})
+                                      .text(error.text));
 }
 
-Bytes popupMessage(MessageTime time, const PopupMessage& popup) {
-    auto body = message(time, kFromController, 2);
-    body.put(std::uint32_t{0})
-        .put(std::uint8_t{0})
-        .put(popup.warning)
-        .put(popup.error)
-        .put(popup.blocking)
-        .put(shortLength(popup.title))
-        .text(std::string_view(popup.title).substr(0, 255))
-        .text(popup.text);
-    return package(kRobotMessage, std::move(body));
+Bytes popupMessage(MessageTime time, const urscript::Popup& popup) {
+    return package(kRobotMessage, message(time, kFromController, 2)
+                                      .put(std::uint32_t{0})
+                                      .put(std::uint8_t{0})
+                                      .put(popup.level == urscript::Popup::Level::warning)
+                                      .put(popup.level == urscript::Popup::Level::error)
+                                      .put(popup.blocking)
+                                      .put(shortLength(popup.title))
+                                      .text(std::string_view(popup.title).substr(0, 255))
+                                      .text(popup.text));
 }
 
 }  // namespace metier::virtual_ur

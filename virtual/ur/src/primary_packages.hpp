@@ -5,13 +5,13 @@
 #include <string_view>
 
 #include "metier/motion/robot_model.hpp"
+#include "metier/urscript/robot.hpp"
 #include "robot_state.hpp"
 #include "rtde_session.hpp"
-#include "wire_bytes.hpp"
 
 namespace metier::virtual_ur {
 
-// Packages of the ports 30001 and 30002. Every function returns one whole package.
+// Packages of the ports 30001 to 30003. Every function returns one whole package.
 // Source: the maker's client interface documents; the packet captured in URCL's tests.
 
 /// Properties of the robot that do not change.
@@ -30,6 +30,8 @@ Bytes robotStatePackage(const RobotState& state, const RobotDescription& robot);
 /// Microseconds of the controller; UINT64_MAX where the maker sends none.
 using MessageTime = std::uint64_t;
 
+MessageTime timeOf(const RobotState& state);
+
 Bytes versionMessage(const RobotDescription& robot);
 Bytes textMessage(MessageTime time, std::string_view text);
 /// \param title as "PROGRAM_XXX_STARTED", at most 255 bytes
@@ -47,13 +49,11 @@ struct ErrorCode {
 };
 Bytes errorCodeMessage(MessageTime time, const ErrorCode& error);
 
-struct PopupMessage {
-    std::string title;
-    std::string text;
-    bool warning = false;
-    bool error = false;
-    bool blocking = false;
-};
-Bytes popupMessage(MessageTime time, const PopupMessage& popup);
+/// Package that port 30003 sends each cycle: 1116 bytes for software 3.10 to 3.15, 1220 bytes for
+/// 5.10 and later.
+/// Source: the maker's "Realtime Client Interface", versions 3.14 and 5.10.
+Bytes realtimePackage(const RobotState& state, Series series);
+
+Bytes popupMessage(MessageTime time, const urscript::Popup& popup);
 
 }  // namespace metier::virtual_ur

@@ -82,16 +82,12 @@ ProgramRunner::ProgramRunner(ScriptRobot& robot, const RobotState& state,
                              std::function<void(Bytes)> tell)
     : robot_(robot), robot_state_(state), tell_(std::move(tell)) {}
 
-MessageTime ProgramRunner::now() const {
-    return static_cast<MessageTime>(std::llround(robot_state_.timestamp * 1e6));
-}
-
 void ProgramRunner::run(std::string_view text) {
     auto program = Program::parse(text);
     if (!program) {
         const auto place = placeOf(program.error().message);
-        tell_(textMessage(now(), program.error().message));
-        tell_(runtimeExceptionMessage(now(), place.line, place.column,
+        tell_(textMessage(timeOf(robot_state_), program.error().message));
+        tell_(runtimeExceptionMessage(timeOf(robot_state_), place.line, place.column,
                                       inMakersWords(program.error(), place, text)));
         return;
     }
@@ -251,12 +247,13 @@ std::uint32_t ProgramRunner::line() const {
 }
 
 void ProgramRunner::tellKey(std::string_view title) {
-    tell_(keyMessage(now(), title, primary_->program().name()));
+    tell_(keyMessage(timeOf(robot_state_), title, primary_->program().name()));
 }
 
 void ProgramRunner::tellException(const urscript::Interpreter& interpreter) {
     if (const auto& exception = interpreter.exception()) {
-        tell_(runtimeExceptionMessage(now(), exception->line, exception->column, exception->text));
+        tell_(runtimeExceptionMessage(timeOf(robot_state_), exception->line, exception->column,
+                                      exception->text));
     }
 }
 

@@ -58,7 +58,6 @@ private:
     void advance(bool standing);
     void tellKey(std::string_view title);
     void tellException(const urscript::Interpreter& interpreter);
-    MessageTime now() const;
 
     ScriptRobot& robot_;
     const RobotState& robot_state_;

@@ -1,28 +1,14 @@
-#include "realtime_package.hpp"
+#include <array>
 
-#include <algorithm>
+#include "primary_packages.hpp"
 
 namespace metier::virtual_ur {
 
 namespace {
 
-// The field "program state": stopped, stopping, playing, pausing, paused, resuming (believed).
-double programState(RuntimeState state) {
-    switch (state) {
-        case RuntimeState::stopping:
-            return 5;
-        case RuntimeState::playing:
-            return 2;
-        case RuntimeState::pausing:
-        case RuntimeState::paused:
-            return 3;
-        case RuntimeState::resuming:
-            return 4;
-        case RuntimeState::stopped:
-            break;
-    }
-    return 1;
-}
+// The field "program state" by RuntimeState: stopping, stopped, playing, pausing, paused, resuming
+// (believed).
+constexpr std::array kProgramStates{5.0, 1.0, 2.0, 3.0, 3.0, 4.0};
 
 void putDoubles(ByteWriter& body, std::size_t zeros) {
     body.zeros(zeros * sizeof(double));
@@ -55,7 +41,7 @@ void putModes(ByteWriter& body, const RobotState& state) {
     body.put(state.main_voltage).put(state.robot_voltage).put(state.robot_current);
     body.putAll(state.joint_voltage)
         .put(static_cast<double>(state.io.digital_outputs))
-        .put(programState(state.runtime_state))
+        .put(kProgramStates.at(static_cast<std::size_t>(state.runtime_state)))
         .putAll(state.elbow_position)
         .putAll(state.elbow_velocity)
         .put(static_cast<double>(state.safety_mode));  // safety status
@@ -72,9 +58,8 @@ Bytes realtimePackage(const RobotState& state, Series series) {
         body.put(state.payload).putAll(state.payload_cog).putAll(state.payload_inertia);
     }
     ByteWriter package;
-    const Bytes content = std::move(body).take();
-    package.put(static_cast<std::int32_t>(content.size() + 4)).bytes(content);
-    return std::move(package).take();
+    package.put(static_cast<std::int32_t>(body.content().size() + 4)).bytes(body.content());
+    return package.content();
 }
 
 }  // namespace metier::virtual_ur

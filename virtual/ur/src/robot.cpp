@@ -14,8 +14,6 @@ namespace metier::virtual_ur {
 
 namespace {
 
-constexpr std::string_view kSpace = " \t\r\n";
-
 // Clients wait until a controller has run for 40 s before they trust it.
 constexpr double kFirstSecond = 64.0;
 
@@ -54,11 +52,7 @@ void Robot::begin() {
     script_robot_.emplace(ScriptRobot::Parts{
         arm_, state_, sockets_, options_.arm.cycle,
         [this](const std::string& text) { tellText(text); },
-        [this](const urscript::Popup& popup) {
-            around_.tell(popupMessage(
-                now(), {popup.title, popup.text, popup.level == urscript::Popup::Level::warning,
-                        popup.level == urscript::Popup::Level::error, popup.blocking}));
-        },
+        [this](const urscript::Popup& popup) { around_.tell(popupMessage(timeOf(state_), popup)); },
         [this] { asked_.power_down = true; }, [this] { asked_.protective_stop = true; }});
     programs_.emplace(*script_robot_, state_,
                       [this](const Bytes& message) { around_.tell(message); });
@@ -71,10 +65,6 @@ void Robot::restart() {
     script_robot_.reset();
     sockets_.closeAll();
     begin();
-}
-
-MessageTime Robot::now() const {
-    return static_cast<MessageTime>(std::llround(state_.timestamp * 1e6));
 }
 
 void Robot::cycle() {
@@ -107,7 +97,7 @@ void Robot::doAsked() {
 void Robot::watchSafety() {
     if (const auto mode = modes_->safetyMode(); mode != published_safety_) {
         published_safety_ = mode;
-        around_.tell(safetyModeMessage(now(), mode));
+        around_.tell(safetyModeMessage(timeOf(state_), mode));
     }
 }
 
@@ -149,9 +139,9 @@ bool Robot::commandsAllowed() const {
 
 void Robot::takeScript(std::string_view text) {
     if (!commandsAllowed()) {
-        around_.tell(
-            errorCodeMessage(now(), {kReadOnlyInterface, 0, ErrorCode::Level::warning,
-                                     "Socket is read-only when the robot is in local control"}));
+        around_.tell(errorCodeMessage(timeOf(state_),
+                                      {kReadOnlyInterface, 0, ErrorCode::Level::warning,
+                                       "Socket is read-only when the robot is in local control"}));
         return;
     }
     if (takeCommandLine(trimmed(text))) {
@@ -192,7 +182,7 @@ bool Robot::takeCommandLine(std::string_view line) {
 }
 
 void Robot::tellText(std::string_view text) {
-    around_.tell(textMessage(now(), text));
+    around_.tell(textMessage(timeOf(state_), text));
 }
 
 void Robot::stopEverything() {
@@ -205,10 +195,6 @@ void Robot::stopEverything() {
 void Robot::powerOff() {
     stopEverything();
     modes_->powerOff();
-}
-
-Result<void> Robot::unlock() {
-    return modes_->unlock();
 }
 
 void Robot::restartSafety() {
@@ -224,20 +210,12 @@ Result<void> Robot::play() {
 }
 
 void Robot::showPopup(std::string text) {
-    around_.tell(popupMessage(now(), {"", std::move(text), false, false, false}));
-}
-
-void Robot::closePopup() {
-    script_robot_->closePopup();
+    around_.tell(popupMessage(timeOf(state_), {.text = std::move(text), .title = ""}));
 }
 
 void Robot::emergencyStop() {
     stopEverything();
     modes_->emergencyStop();
-}
-
-void Robot::releaseEmergencyStop() {
-    modes_->releaseEmergencyStop();
 }
 
 void Robot::protectiveStop(const ArmViolation& cause) {
@@ -247,8 +225,8 @@ void Robot::protectiveStop(const ArmViolation& cause) {
     arm_.brake();
     modes_->protectiveStop();
     programs_->holdForSafety();
-    around_.tell(errorCodeMessage(
-        now(), {cause.code, 0, ErrorCode::Level::violation, "Protective stop: " + cause.text}));
+    around_.tell(errorCodeMessage(timeOf(state_), {cause.code, 0, ErrorCode::Level::violation,
+                                                   "Protective stop: " + cause.text}));
 }
 
 void Robot::safeguardStop() {

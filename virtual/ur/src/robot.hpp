@@ -7,8 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "metier/virtual_controller/link_faults.hpp"
-#include "metier/virtual_controller/world_link.hpp"
+#include "metier/virtual_controller/controller.hpp"
 #include "program_runner.hpp"
 #include "robot_options.hpp"
 #include "script_sockets.hpp"
@@ -57,15 +56,15 @@ public:
     Result<void> powerOn() { return modes_->powerOn(); }
     Result<void> releaseBrakes() { return modes_->releaseBrakes(); }
     void powerOff();
-    Result<void> unlock();
+    Result<void> unlock() { return modes_->unlock(); }
     void restartSafety();
     Result<void> play();
     void showPopup(std::string text);
-    void closePopup();
+    void closePopup() { script_robot_->closePopup(); }
 
     // ---- for injections ----
     void emergencyStop();
-    void releaseEmergencyStop();
+    void releaseEmergencyStop() { modes_->releaseEmergencyStop(); }
     void protectiveStop(const ArmViolation& cause);
     /// Someone opens or closes the safeguard: the program is paused.
     void safeguardStop();
@@ -90,7 +89,6 @@ private:
     void publishTool();
     void publishModes();
     bool takeCommandLine(std::string_view line);
-    MessageTime now() const;
 
     const RobotOptions options_;
     Surroundings around_;
@@ -112,5 +110,10 @@ private:
     std::optional<ProgramRunner> programs_;
     SafetyMode published_safety_ = SafetyMode::normal;
 };
+
+/// Acts of persons and accidents that a robot suffers.
+///
+/// \param robot outlives them
+std::vector<virtual_controller::InjectionHelp> accidentsOf(Robot& robot);
 
 }  // namespace metier::virtual_ur

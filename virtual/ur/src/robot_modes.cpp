@@ -120,9 +120,15 @@ void RobotModes::restartSafety() {
     powerOff();
 }
 
-void RobotModes::protectiveStop() {
+void RobotModes::interrupt(SafetyMode mode) {
     if (mayRun()) {
-        enter(SafetyMode::protective_stop);
+        enter(mode);
+    }
+}
+
+void RobotModes::leave(SafetyMode mode) {
+    if (safety_ == mode) {
+        enter(SafetyMode::normal);
     }
 }
 
@@ -131,39 +137,9 @@ void RobotModes::emergencyStop() {
     powerOff();
 }
 
-void RobotModes::releaseEmergencyStop() {
-    if (emergencyStopped()) {
-        enter(SafetyMode::normal);
-    }
-}
-
-void RobotModes::safeguardStop() {
-    if (mayRun()) {
-        enter(SafetyMode::safeguard_stop);
-    }
-}
-
-void RobotModes::closeSafeguard() {
-    if (safety_ == SafetyMode::safeguard_stop) {
-        enter(SafetyMode::normal);
-    }
-}
-
 void RobotModes::violation() {
     enter(SafetyMode::violation);
     powerOff();
-}
-
-void RobotModes::recovery() {
-    if (mayRun()) {
-        enter(SafetyMode::recovery);
-    }
-}
-
-void RobotModes::endRecovery() {
-    if (safety_ == SafetyMode::recovery) {
-        enter(SafetyMode::normal);
-    }
 }
 
 std::uint32_t RobotModes::safetyStatusBits() const {

@@ -36,16 +36,16 @@ public:
     void restartSafety();
 
     // Events that happen to the robot.
-    void protectiveStop();
+    void protectiveStop() { interrupt(SafetyMode::protective_stop); }
     void emergencyStop();
-    void releaseEmergencyStop();
-    void safeguardStop();
-    void closeSafeguard();
+    void releaseEmergencyStop() { leave(SafetyMode::robot_emergency_stop); }
+    void safeguardStop() { interrupt(SafetyMode::safeguard_stop); }
+    void closeSafeguard() { leave(SafetyMode::safeguard_stop); }
     /// Violation, which lasts until the safety system is restarted.
     void violation();
     /// An axis is outside of its safety limits; programs may not run until it is moved back.
-    void recovery();
-    void endRecovery();
+    void recovery() { interrupt(SafetyMode::recovery); }
+    void endRecovery() { leave(SafetyMode::recovery); }
 
     RobotMode robotMode() const { return robot_; }
     SafetyMode safetyMode() const { return safety_; }
@@ -58,6 +58,10 @@ public:
 private:
     Result<void> refuseUnlessSafe() const;
     void enter(SafetyMode mode);
+    /// Enters the mode if a program may run.
+    void interrupt(SafetyMode mode);
+    /// Becomes normal if the mode is this one.
+    void leave(SafetyMode mode);
 
     const ModeTimes times_;
     RobotMode robot_;

@@ -28,26 +28,6 @@ Series readSeries(const Settings& settings, const motion::RobotModel& model) {
     return text == "e" ? Series::e_series : Series::cb3;
 }
 
-std::uint16_t readPort(const Settings& settings, std::string_view name, std::uint16_t usual) {
-    return static_cast<std::uint16_t>(settings.numberOr(name, usual, 0, 65'535));
-}
-
-Ports readPorts(const Settings& settings) {
-    const Ports usual;
-    Ports ports;
-    ports.dashboard = readPort(settings, "dashboard_port", usual.dashboard);
-    ports.primary = readPort(settings, "primary_port", usual.primary);
-    ports.secondary = readPort(settings, "secondary_port", usual.secondary);
-    ports.realtime = readPort(settings, "realtime_port", usual.realtime);
-    ports.rtde = readPort(settings, "rtde_port", usual.rtde);
-    ports.primary_read_only = readPort(settings, "primary_read_only_port", usual.primary_read_only);
-    ports.secondary_read_only =
-        readPort(settings, "secondary_read_only_port", usual.secondary_read_only);
-    ports.realtime_read_only =
-        readPort(settings, "realtime_read_only_port", usual.realtime_read_only);
-    return ports;
-}
-
 /// Type number of "ur5e" and the like: the number in the name is the size.
 std::int32_t robotType(std::string_view model) {
     if (model.find("10") != std::string_view::npos) {
@@ -120,7 +100,10 @@ Result<RobotOptions> readOptions(const Settings& settings, const motion::RobotMo
     options.serial_number = settings.textOr("serial_number", "20195599999");
     options.robot_model = settings.textOr("robot_model", upperCase(model.name()));
     options.programs = settings.textOr("programs", "");
-    options.ports = readPorts(settings);
+    std::ranges::transform(kServices, options.ports.begin(), [&](const Service& service) {
+        const auto name = fmt::format("{}_port", service.name);
+        return static_cast<std::uint16_t>(settings.numberOr(name, service.usual_port, 0, 65'535));
+    });
     return settings.finish().map([&] { return options; });
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "arm.hpp"
 #include "metier/base/error.hpp"
@@ -11,17 +13,20 @@
 
 namespace metier::virtual_ur {
 
-/// TCP ports of the services; 0: a free port.
-struct Ports {
-    std::uint16_t dashboard = 29999;
-    std::uint16_t primary = 30001;
-    std::uint16_t secondary = 30002;
-    std::uint16_t realtime = 30003;
-    std::uint16_t rtde = 30004;
-    std::uint16_t primary_read_only = 30011;
-    std::uint16_t secondary_read_only = 30012;
-    std::uint16_t realtime_read_only = 30013;
+/// A service with its TCP port.
+struct Service {
+    std::string_view name;
+    std::uint16_t usual_port;
 };
+
+inline constexpr std::array kServices{Service{"dashboard", 29999},
+                                      Service{"primary", 30001},
+                                      Service{"secondary", 30002},
+                                      Service{"realtime", 30003},
+                                      Service{"rtde", 30004},
+                                      Service{"primary_read_only", 30011},
+                                      Service{"secondary_read_only", 30012},
+                                      Service{"realtime_read_only", 30013}};
 
 /// Right of scripts and the dashboard to command an e-Series arm.
 enum class Control : std::uint8_t { local, remote };
@@ -36,7 +41,7 @@ struct RobotOptions {
     std::string serial_number;
     std::string robot_model;         ///< answer of the dashboard, such as "UR5"
     std::filesystem::path programs;  ///< folder of what the dashboard loads; empty: none
-    Ports ports;
+    std::array<std::uint16_t, kServices.size()> ports{};  ///< of kServices; 0: a free one
     std::string address = "127.0.0.1";  ///< the robot's own, where its sockets come from
 };
 

@@ -1,9 +1,9 @@
 // The outputs that have no number, by name.
 
-#include "rtde_outputs.hpp"
-
 #include <array>
 #include <cmath>
+
+#include "rtde_variables.hpp"
 
 namespace metier::virtual_ur {
 

@@ -31,14 +31,6 @@ std::vector<std::string> namesIn(std::string_view list) {
     return {names.begin(), names.end() - (comma_behind ? 1 : 0)};
 }
 
-std::string join(const std::vector<std::string>& types) {
-    std::string list;
-    for (const auto& type : types) {
-        list += list.empty() ? type : "," + type;
-    }
-    return list;
-}
-
 }  // namespace
 
 RtdeSession::RtdeSession(RtdeShared& shared, virtual_controller::TcpPeer& peer)
@@ -90,9 +82,8 @@ void RtdeSession::handle(char type, std::span<const std::byte> payload) {
         case 'P':
             started_ = false;
             return answer('P', 1);
-        case 'M':
-            return shared_.log(
-                fmt::format("RTDE client {}: {} bytes of text", peer_.address(), payload.size()));
+        case 'M':  // a text of the client
+            return;
         default:
             return sendText(kError, fmt::format("unknown package type {}", static_cast<int>(type)));
     }
@@ -109,9 +100,12 @@ void RtdeSession::negotiate(ByteReader payload) {
 
 void RtdeSession::answerVersion() {
     const auto& version = shared_.version;
-    ByteWriter payload;
-    payload.put(version.major).put(version.minor).put(version.bugfix).put(version.build);
-    sendPackage('v', std::move(payload).take());
+    sendPackage('v', ByteWriter()
+                         .put(version.major)
+                         .put(version.minor)
+                         .put(version.bugfix)
+                         .put(version.build)
+                         .content());
 }
 
 void RtdeSession::setUpOutputs(ByteReader payload) {
@@ -140,8 +134,8 @@ void RtdeSession::setUpOutputs(ByteReader payload) {
     if (protocol_ == 2) {
         answered.put(static_cast<std::uint8_t>(!outputs_.variables.empty()));
     }
-    answered.text(join(types));
-    sendPackage('O', std::move(answered).take());
+    answered.text(fmt::format("{}", fmt::join(types, ",")));
+    sendPackage('O', answered.content());
 }
 
 void RtdeSession::setUpInputs(std::string_view list) {
@@ -167,8 +161,9 @@ void RtdeSession::setUpInputs(std::string_view list) {
         inputs_.push_back(std::move(recipe));
     }
     ByteWriter answered;
-    answered.put(static_cast<std::uint8_t>(valid ? inputs_.size() : 0)).text(join(types));
-    sendPackage('I', std::move(answered).take());
+    answered.put(static_cast<std::uint8_t>(valid ? inputs_.size() : 0))
+        .text(fmt::format("{}", fmt::join(types, ",")));
+    sendPackage('I', answered.content());
 }
 
 void RtdeSession::takeInputs(ByteReader payload) {
@@ -204,7 +199,7 @@ void RtdeSession::cycle(const RobotState& state) {
     for (const auto& variable : outputs_.variables) {
         variable.append(state, payload);
     }
-    sendPackage('U', std::move(payload).take());
+    sendPackage('U', payload.content());
 }
 
 void RtdeSession::sendPackage(char type, std::span<const std::byte> payload) {
@@ -212,7 +207,7 @@ void RtdeSession::sendPackage(char type, std::span<const std::byte> payload) {
     package.put(static_cast<std::uint16_t>(kHeader + payload.size()))
         .put(static_cast<std::uint8_t>(type))
         .bytes(payload);
-    peer_.send(std::move(package).take());
+    peer_.send(package.content());
 }
 
 void RtdeSession::answer(char type, std::uint8_t value) {
@@ -228,7 +223,7 @@ void RtdeSession::sendText(std::uint8_t level, std::string_view text) {
         payload.put(static_cast<std::uint8_t>(text.size())).text(text);
         payload.put(static_cast<std::uint8_t>(kSource.size())).text(kSource).put(level);
     }
-    sendPackage('M', std::move(payload).take());
+    sendPackage('M', payload.content());
 }
 
 }  // namespace metier::virtual_ur

@@ -29,7 +29,6 @@ struct RtdeShared {
     RtdeInputs inputs;
     /// Inputs of these names were just written.
     std::function<void(const std::vector<std::string>& names)> written;
-    std::function<void(std::string text)> log;
     /// Inputs that some client claimed, all names together.
     std::set<std::string, std::less<>> claimed;
 };

@@ -5,7 +5,6 @@
 #include <type_traits>
 
 #include "metier/base/text.hpp"
-#include "rtde_outputs.hpp"
 
 namespace metier::virtual_ur {
 
@@ -59,10 +58,65 @@ const std::array kInputs{
 
 // ---- registers ----
 
-struct RegisterName {
-    enum class Kind : std::uint8_t { bits, bit, integer, number };
-    Kind kind = Kind::bit;
-    std::size_t number = 0;  // number of the first bit for `bits`
+/// One kind of general purpose registers.
+struct RegisterKind {
+    std::string_view prefix;  // of its names, before the number
+    std::size_t first;
+    std::size_t end;
+    RtdeValue type;
+    Read read_input;
+    Read read_output;
+    Write write;
+};
+
+template <auto bank, auto values>
+RtdeValue readRegister(const State& state, std::size_t i) {
+    return RtdeValue((state.*bank.*values)[i]);
+}
+
+template <auto values, typename T>
+constexpr RegisterKind kindOf(std::string_view prefix, std::size_t first, std::size_t end) {
+    return {prefix,
+            first,
+            end,
+            T{},
+            readRegister<&State::inputs, values>,
+            readRegister<&State::outputs, values>,
+            [](const RtdeInputs& to, const RtdeValue& given, std::size_t i) {
+                (to.registers.*values)[i] = std::get<T>(given);
+            }};
+}
+
+/// 32 bits from `first` on as one number.
+template <auto bank>
+RtdeValue readPacked(const State& state, std::size_t first) {
+    std::uint32_t result = 0;
+    for (std::size_t i = 0; i < 32; ++i) {
+        result |= static_cast<std::uint32_t>((state.*bank).bits[first + i]) << i;
+    }
+    return result;
+}
+
+const RegisterKind kPacked{"bit_registers",
+                           0,
+                           64,
+                           std::uint32_t{},
+                           readPacked<&State::inputs>,
+                           readPacked<&State::outputs>,
+                           [](const RtdeInputs& to, const RtdeValue& given, std::size_t first) {
+                               for (std::size_t i = 0; i < 32; ++i) {
+                                   to.registers.bits[first + i] =
+                                       (std::get<std::uint32_t>(given) >> i & 1U) != 0;
+                               }
+                           }};
+
+const std::array kKinds{kindOf<&Registers::bits, bool>("bit_register_", 64, 128),
+                        kindOf<&Registers::integers, std::int32_t>("int_register_", 0, 48),
+                        kindOf<&Registers::numbers, double>("double_register_", 0, 48)};
+
+struct Register {
+    const RegisterKind& kind;
+    std::size_t number;  // of the first bit for packed ones
 };
 
 std::optional<std::size_t> numberAfter(std::string_view name, std::string_view prefix) {
@@ -75,88 +129,16 @@ std::optional<std::size_t> numberAfter(std::string_view name, std::string_view p
 }
 
 /// \param name without "input_" or "output_"
-std::optional<RegisterName> parseRegister(std::string_view name) {
-    using Kind = RegisterName::Kind;
-    if (name == "bit_registers0_to_31") {
-        return RegisterName{Kind::bits, 0};
+std::optional<Register> parseRegister(std::string_view name) {
+    if (name == "bit_registers0_to_31" || name == "bit_registers32_to_63") {
+        return Register{kPacked, name.find("32_") == std::string_view::npos ? 0U : 32U};
     }
-    if (name == "bit_registers32_to_63") {
-        return RegisterName{Kind::bits, 32};
-    }
-    if (const auto i = numberAfter(name, "bit_register_"); i && *i >= 64 && *i < 128) {
-        return RegisterName{Kind::bit, *i};
-    }
-    if (const auto i = numberAfter(name, "int_register_"); i && *i < 48) {
-        return RegisterName{Kind::integer, *i};
-    }
-    if (const auto i = numberAfter(name, "double_register_"); i && *i < 48) {
-        return RegisterName{Kind::number, *i};
+    for (const auto& kind : kKinds) {
+        if (const auto i = numberAfter(name, kind.prefix); i && *i >= kind.first && *i < kind.end) {
+            return Register{kind, *i};
+        }
     }
     return std::nullopt;
-}
-
-RtdeValue typeOf(RegisterName::Kind kind) {
-    switch (kind) {
-        case RegisterName::Kind::bits:
-            return std::uint32_t{};
-        case RegisterName::Kind::bit:
-            return false;
-        case RegisterName::Kind::integer:
-            return std::int32_t{};
-        case RegisterName::Kind::number:
-            break;
-    }
-    return 0.0;
-}
-
-std::uint32_t packed(const std::bitset<128>& bits, std::size_t first) {
-    std::uint32_t result = 0;
-    for (std::size_t i = 0; i < 32; ++i) {
-        result |= static_cast<std::uint32_t>(bits[first + i]) << i;
-    }
-    return result;
-}
-
-template <auto bank>
-Read readerOf(RegisterName::Kind kind) {
-    switch (kind) {
-        case RegisterName::Kind::bits:
-            return
-                [](const State& s, std::size_t i) { return RtdeValue(packed((s.*bank).bits, i)); };
-        case RegisterName::Kind::bit:
-            return [](const State& s, std::size_t i) {
-                return RtdeValue(static_cast<bool>((s.*bank).bits[i]));
-            };
-        case RegisterName::Kind::integer:
-            return [](const State& s, std::size_t i) { return RtdeValue((s.*bank).integers[i]); };
-        case RegisterName::Kind::number:
-            break;
-    }
-    return [](const State& s, std::size_t i) { return RtdeValue((s.*bank).numbers[i]); };
-}
-
-Write writerOf(RegisterName::Kind kind) {
-    switch (kind) {
-        case RegisterName::Kind::bits:
-            return [](const RtdeInputs& to, const RtdeValue& given, std::size_t first) {
-                for (std::size_t i = 0; i < 32; ++i) {
-                    to.registers.bits[first + i] = (std::get<std::uint32_t>(given) >> i & 1U) != 0;
-                }
-            };
-        case RegisterName::Kind::bit:
-            return [](const RtdeInputs& to, const RtdeValue& given, std::size_t i) {
-                to.registers.bits[i] = std::get<bool>(given);
-            };
-        case RegisterName::Kind::integer:
-            return [](const RtdeInputs& to, const RtdeValue& given, std::size_t i) {
-                to.registers.integers[i] = std::get<std::int32_t>(given);
-            };
-        case RegisterName::Kind::number:
-            break;
-    }
-    return [](const RtdeInputs& to, const RtdeValue& given, std::size_t i) {
-        to.registers.numbers[i] = std::get<double>(given);
-    };
 }
 
 /// The name without the prefix; empty if it has another one.
@@ -189,10 +171,9 @@ std::optional<RtdeVariable> RtdeVariable::output(std::string_view name) {
     if (!written && !given) {
         return std::nullopt;
     }
-    const auto& parsed = written ? *written : *given;
-    RtdeVariable variable(typeOf(parsed.kind), parsed.number);
-    variable.read_ =
-        written ? readerOf<&State::outputs>(parsed.kind) : readerOf<&State::inputs>(parsed.kind);
+    const auto& [kind, number] = written ? *written : *given;
+    RtdeVariable variable(kind.type, number);
+    variable.read_ = written ? kind.read_output : kind.read_input;
     return variable;
 }
 
@@ -208,8 +189,8 @@ std::optional<RtdeVariable> RtdeVariable::input(std::string_view name) {
     if (!parsed) {
         return std::nullopt;
     }
-    RtdeVariable variable(typeOf(parsed->kind), parsed->number);
-    variable.write_ = writerOf(parsed->kind);
+    RtdeVariable variable(parsed->kind.type, parsed->number);
+    variable.write_ = parsed->kind.write;
     return variable;
 }
 
@@ -250,14 +231,6 @@ void RtdeVariable::take(ByteReader& package, const RtdeInputs& inputs) const {
     if (isFinite(given)) {
         write_(inputs, given, number_);
     }
-}
-
-std::vector<std::string> rtdeOutputNames() {
-    std::vector<std::string> names;
-    for (const auto& output : rtdeOutputs()) {
-        names.emplace_back(output.name);
-    }
-    return names;
 }
 
 std::vector<std::string> rtdeInputNames() {

@@ -4,15 +4,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "metier/virtual_controller/wire_bytes.hpp"
 #include "robot_state.hpp"
-#include "wire_bytes.hpp"
 
 namespace metier::virtual_ur {
+
+using virtual_controller::ByteReader;
+using virtual_controller::Bytes;
+using virtual_controller::ByteWriter;
 
 /// A value of an RTDE variable. The alternative is the variable's type on the wire.
 using RtdeValue = std::variant<bool, std::uint8_t, std::uint32_t, std::uint64_t, std::int32_t,
@@ -53,8 +58,16 @@ private:
     Write write_ = nullptr;
 };
 
-/// Every name that has no number, with whether it is an output or an input.
-std::vector<std::string> rtdeOutputNames();
+/// An output and how it is read; what it reads has its type.
+struct RtdeOutput {
+    std::string_view name;
+    RtdeVariable::Read read;
+};
+
+/// Every output that has no number.
+std::span<const RtdeOutput> rtdeOutputs();
+
+/// Every input that has no number.
 std::vector<std::string> rtdeInputNames();
 
 }  // namespace metier::virtual_ur

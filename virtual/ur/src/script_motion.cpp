@@ -19,14 +19,6 @@ using urscript::Target;
 // Deceleration of the arm before a move begins [rad/s2].
 constexpr double kStopBeforeMove = 10.0;
 
-double leading(const Vector6& values) {
-    double result = 0.0;
-    for (const double value : values) {
-        result = std::max(result, std::abs(value));
-    }
-    return result;
-}
-
 bool isFinite(const Vector6& values) {
     return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
@@ -35,9 +27,7 @@ Result<Vector6> solve(const Arm& arm, const motion::Pose& base_from_flange, cons
     motion::IkRequest request;
     request.reference = toJointVector(near);
     return arm.model().kinematics().inverse(base_from_flange, request).map([](const auto& found) {
-        Vector6 q{};
-        std::copy(found.begin(), found.end(), q.begin());
-        return q;
+        return toVector6(found);
     });
 }
 
@@ -122,7 +112,7 @@ public:
                 .head<3>()
                 .norm();
         const double seconds = tool_speed / positive(stop.acceleration, 10.0);
-        arm_.begin(stopJ(leading(velocity) / std::max(seconds, cycle_)));
+        arm_.begin(stopJ(largest(velocity) / std::max(seconds, cycle_)));
         return {};
     }
     Result<void> operator()(const urscript::DirectTorque&) {

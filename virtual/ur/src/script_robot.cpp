@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -23,17 +24,9 @@ struct BitRange {
     std::size_t first = 0;
     int count = 8;
 };
-BitRange bitsOf(DigitalPort port) {
-    switch (port) {
-        case DigitalPort::standard:
-            return {0, 8};
-        case DigitalPort::configurable:
-            return {8, 8};
-        case DigitalPort::tool:
-            break;
-    }
-    return {16, 2};
-}
+
+// By DigitalPort: standard, configurable, tool.
+constexpr std::array kBits{BitRange{0, 8}, BitRange{8, 8}, BitRange{16, 2}};
 
 Result<std::size_t> within(int index, std::size_t count, std::string_view what) {
     if (index < 0 || static_cast<std::size_t>(index) >= count) {
@@ -43,8 +36,18 @@ Result<std::size_t> within(int index, std::size_t count, std::string_view what) 
     return static_cast<std::size_t>(index);
 }
 
+template <typename Values>
+auto read(const Values& values, int index, std::string_view what) {
+    return within(index, values.size(), what).map([&](std::size_t i) { return values[i]; });
+}
+
+template <typename Values, typename Value>
+Result<void> write(Values& values, int index, Value value, std::string_view what) {
+    return within(index, values.size(), what).map([&](std::size_t i) { values[i] = value; });
+}
+
 Result<std::uint64_t> bitOf(DigitalPort port, int index) {
-    const auto range = bitsOf(port);
+    const auto& range = kBits.at(static_cast<std::size_t>(port));
     return within(index, static_cast<std::size_t>(range.count), "digital port")
         .map([&](std::size_t i) { return std::uint64_t{1} << (range.first + i); });
 }
@@ -76,17 +79,11 @@ struct StateSetter {
         }
         const auto index = static_cast<std::size_t>(domain.index);
         const auto value = static_cast<std::uint8_t>(domain.domain != 0);
-        switch (domain.port) {
-            case urscript::AnalogDomain::Port::standard_input:
-                state.io.analog_input_domains[index] = value;
-                break;
-            case urscript::AnalogDomain::Port::standard_output:
-                state.io.analog_output_domains[index] = value;
-                break;
-            case urscript::AnalogDomain::Port::tool_input:
-                state.io.tool_analog_input_domains[index] = value;
-                break;
-        }
+        // By AnalogDomain::Port: standard input, standard output, tool input.
+        constexpr std::array kDomains{&InputsOutputs::analog_input_domains,
+                                      &InputsOutputs::analog_output_domains,
+                                      &InputsOutputs::tool_analog_input_domains};
+        (state.io.*kDomains.at(static_cast<std::size_t>(domain.port)))[index] = value;
     }
     // Force control and freedrive of an arm that touches nothing: it stays where it is.
     template <typename Other>
@@ -198,45 +195,27 @@ const Registers& ScriptRobot::bank(RegisterBank which) const {
 }
 
 Result<std::int32_t> ScriptRobot::integerRegister(RegisterBank which, int index) const {
-    const auto& integers = bank(which).integers;
-    return within(index, integers.size(), "integer register").map([&](std::size_t i) {
-        return integers[i];
-    });
+    return read(bank(which).integers, index, "integer register");
 }
 
 Result<double> ScriptRobot::floatRegister(RegisterBank which, int index) const {
-    const auto& numbers = bank(which).numbers;
-    return within(index, numbers.size(), "float register").map([&](std::size_t i) {
-        return numbers[i];
-    });
+    return read(bank(which).numbers, index, "float register");
 }
 
 Result<bool> ScriptRobot::bitRegister(RegisterBank which, int index) const {
-    const auto& bits = bank(which).bits;
-    return within(index, bits.size(), "boolean register").map([&](std::size_t i) {
-        return bits[i];
-    });
+    return read(bank(which).bits, index, "boolean register");
 }
 
 Result<void> ScriptRobot::writeIntegerRegister(int index, std::int32_t value) {
-    auto& integers = parts_.state.outputs.integers;
-    return within(index, integers.size(), "integer register").map([&](std::size_t i) {
-        integers[i] = value;
-    });
+    return write(parts_.state.outputs.integers, index, value, "integer register");
 }
 
 Result<void> ScriptRobot::writeFloatRegister(int index, double value) {
-    auto& numbers = parts_.state.outputs.numbers;
-    return within(index, numbers.size(), "float register").map([&](std::size_t i) {
-        numbers[i] = value;
-    });
+    return write(parts_.state.outputs.numbers, index, value, "float register");
 }
 
 Result<void> ScriptRobot::writeBitRegister(int index, bool value) {
-    auto& bits = parts_.state.outputs.bits;
-    return within(index, bits.size(), "boolean register").map([&](std::size_t i) {
-        bits[i] = value;
-    });
+    return write(parts_.state.outputs.bits, index, value, "boolean register");
 }
 
 Result<bool> ScriptRobot::digitalInput(DigitalPort port, int index) const {
@@ -261,9 +240,7 @@ Result<void> ScriptRobot::setDigitalOutput(DigitalPort port, int index, bool val
 Result<double> ScriptRobot::analogInput(AnalogPort port, int index) const {
     const auto& io = parts_.state.io;
     const auto& inputs = port == AnalogPort::tool ? io.tool_analog_inputs : io.analog_inputs;
-    return within(index, inputs.size(), "analog input").map([&](std::size_t i) {
-        return inputs[i];
-    });
+    return read(inputs, index, "analog input");
 }
 
 namespace {

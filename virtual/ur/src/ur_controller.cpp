@@ -10,14 +10,12 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "accidents.hpp"
 #include "dashboard.hpp"
 #include "metier/urscript/script_splitter.hpp"
 #include "metier/virtual_controller/controller.hpp"
 #include "metier/virtual_controller/standing_time.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
 #include "pacer.hpp"
-#include "realtime_package.hpp"
 #include "robot.hpp"
 
 namespace metier::virtual_ur {
@@ -25,7 +23,6 @@ namespace {
 
 using virtual_controller::Controller;
 using virtual_controller::ControllerRequest;
-using virtual_controller::Injection;
 using virtual_controller::InjectionHelp;
 using virtual_controller::TcpPeer;
 using virtual_controller::TcpServer;
@@ -62,33 +59,22 @@ public:
                 robot_.rate(),
                 robot_.rtdeInputs(),
                 [this](const auto& names) { robot_.inputsWritten(names); },
-                [](const std::string&) {},
                 {}} {}
 
-    /// Errors: those of TcpServer::listen.
-    Result<void> listen();
-    /// Begins to count cycles.
-    void run() {
-        const auto period = std::chrono::duration<double>(robot_.options().arm.cycle);
-        pacer_.emplace(request_.context, std::chrono::round<std::chrono::nanoseconds>(period),
-                       [this] { cycle(); });
-    }
+    /// Opens the ports and begins to count cycles. Errors: those of TcpServer::listen.
+    Result<void> start();
 
-    std::vector<InjectionHelp> injections() const override;
-    Result<void> inject(const Injection& injection) override;
+    std::vector<InjectionHelp> injections() const override { return injections_; }
     nlohmann::ordered_json state() const override;
     void restart() override;
 
 private:
     struct Port {
-        std::string name;
+        std::string_view name;
         std::unique_ptr<TcpServer> server;
     };
 
-    Result<void> listen(std::string name, std::uint16_t port, TcpServer::Handlers handlers);
-    TcpServer& port(std::string_view name);
-    TcpServer::Handlers stateHandlers(bool scripts);
-    TcpServer::Handlers realtimeHandlers(bool scripts);
+    TcpServer::Handlers handlersOf(std::string_view service);
     TcpServer::Handlers rtdeHandlers();
     TcpServer::Handlers dashboardHandlers();
     void takeScript(TcpPeer& peer, std::span<const std::byte> bytes);
@@ -98,6 +84,7 @@ private:
 
     ControllerRequest request_;
     Robot robot_;
+    const std::vector<InjectionHelp> injections_ = accidentsOf(robot_);
     Dashboard dashboard_;
     RtdeShared rtde_;
     std::map<TcpPeer*, std::unique_ptr<RtdeSession>> sessions_;
@@ -108,55 +95,35 @@ private:
     virtual_controller::StandingTime standing_;
 };
 
-Result<void> UrController::listen() {
-    const auto& ports = robot_.options().ports;
-    return listen("dashboard", ports.dashboard, dashboardHandlers())
-        .and_then([&] { return listen("primary", ports.primary, stateHandlers(true)); })
-        .and_then([&] { return listen("secondary", ports.secondary, stateHandlers(true)); })
-        .and_then([&] { return listen("realtime", ports.realtime, realtimeHandlers(true)); })
-        .and_then([&] { return listen("rtde", ports.rtde, rtdeHandlers()); })
-        .and_then([&] {
-            return listen("primary_read_only", ports.primary_read_only, stateHandlers(false));
-        })
-        .and_then([&] {
-            return listen("secondary_read_only", ports.secondary_read_only, stateHandlers(false));
-        })
-        .and_then([&] {
-            return listen("realtime_read_only", ports.realtime_read_only, realtimeHandlers(false));
-        });
-}
-
-Result<void> UrController::listen(std::string name, std::uint16_t port,
-                                  TcpServer::Handlers handlers) {
-    return TcpServer::listen(request_.context, request_.address, port, request_.faults,
-                             std::move(handlers))
-        .map([&](std::unique_ptr<TcpServer> server) {
-            ports_.push_back({std::move(name), std::move(server)});
-        });
-}
-
-TcpServer& UrController::port(std::string_view name) {
-    return *std::find_if(ports_.begin(), ports_.end(), [&](const Port& one) {
-                return one.name == name;
-            })->server;
-}
-
-TcpServer::Handlers UrController::stateHandlers(bool scripts) {
-    TcpServer::Handlers handlers;
-    handlers.on_connected = [this](TcpPeer& peer) {
-        peer.send(versionMessage(robot_.options().description));
-        peer.send(robotStatePackage(robot_.state(), robot_.options().description));
-    };
-    if (scripts) {
-        handlers.on_data = [this](TcpPeer& peer, auto bytes) { takeScript(peer, bytes); };
-        handlers.on_closed = [this](TcpPeer& peer) { splitters_.erase(&peer); };
+Result<void> UrController::start() {
+    for (std::size_t i = 0; i < kServices.size(); ++i) {
+        const auto name = kServices[i].name;
+        METIER_ASSIGN(auto server, TcpServer::listen(request_.context, request_.address,
+                                                     robot_.options().ports[i], request_.faults,
+                                                     handlersOf(name)));
+        ports_.push_back({name, std::move(server)});
     }
-    return handlers;
+    const auto period = std::chrono::duration<double>(robot_.options().arm.cycle);
+    pacer_.emplace(request_.context, std::chrono::round<std::chrono::nanoseconds>(period),
+                   [this] { cycle(); });
+    return {};
 }
 
-TcpServer::Handlers UrController::realtimeHandlers(bool scripts) {
+TcpServer::Handlers UrController::handlersOf(std::string_view service) {
+    if (service == "dashboard") {
+        return dashboardHandlers();
+    }
+    if (service == "rtde") {
+        return rtdeHandlers();
+    }
     TcpServer::Handlers handlers;
-    if (scripts) {
+    if (!service.starts_with("realtime")) {
+        handlers.on_connected = [this](TcpPeer& peer) {
+            peer.send(versionMessage(robot_.options().description));
+            peer.send(robotStatePackage(robot_.state(), robot_.options().description));
+        };
+    }
+    if (!service.ends_with("read_only")) {
         handlers.on_data = [this](TcpPeer& peer, auto bytes) { takeScript(peer, bytes); };
         handlers.on_closed = [this](TcpPeer& peer) { splitters_.erase(&peer); };
     }
@@ -236,48 +203,28 @@ void UrController::cycle() {
         session->cycle(state);
     }
     const auto& description = robot_.options().description;
-    for (const auto name : {"realtime", "realtime_read_only"}) {
-        if (auto& server = port(name); hasPeers(server)) {
-            stream(server, realtimePackage(state, description.series));
-        }
-    }
     const auto tenth = [&](std::uint64_t cycle) {
         return static_cast<std::uint64_t>(static_cast<double>(cycle) * kPrimaryRate /
                                           robot_.rate());
     };
-    if (tenth(state.cycle) != tenth(state.cycle - 1)) {
-        for (const auto name :
-             {"primary", "secondary", "primary_read_only", "secondary_read_only"}) {
-            if (auto& server = port(name); hasPeers(server)) {
-                stream(server, robotStatePackage(state, description));
-            }
+    const bool state_due = tenth(state.cycle) != tenth(state.cycle - 1);
+    for (const auto& [name, server] : ports_) {
+        if (!hasPeers(*server)) {
+            continue;
+        }
+        if (name.starts_with("realtime")) {
+            stream(*server, realtimePackage(state, description.series));
+        } else if (state_due && (name.starts_with("primary") || name.starts_with("secondary"))) {
+            stream(*server, robotStatePackage(state, description));
         }
     }
-}
-
-std::vector<InjectionHelp> UrController::injections() const {
-    std::vector<InjectionHelp> help;
-    for (const auto& accident : accidents()) {
-        help.push_back({accident.name, accident.help});
-    }
-    return help;
-}
-
-Result<void> UrController::inject(const Injection& injection) {
-    for (const auto& accident : accidents()) {
-        if (injection.name == accident.name) {
-            return accident.happen(robot_, injection.value);
-        }
-    }
-    return fail(Errc::not_found,
-                fmt::format("a virtual UR has no injection \"{}\"", injection.name));
 }
 
 nlohmann::ordered_json UrController::state() const {
     const auto& state = robot_.state();
     nlohmann::ordered_json ports;
     for (const auto& one : ports_) {
-        ports[one.name] = one.server->port();
+        ports[std::string(one.name)] = one.server->port();
     }
     nlohmann::ordered_json shown{
         {"robot_mode", toText(state.robot_mode)},
@@ -311,8 +258,7 @@ Result<std::unique_ptr<Controller>> start(const ControllerRequest& request) {
     METIER_ASSIGN(auto options, readOptions(request.settings, *request.model));
     options.address = request.address;
     auto controller = std::make_unique<UrController>(request, options);
-    METIER_TRY(controller->listen());
-    controller->run();
+    METIER_TRY(controller->start());
     return controller;
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "metier/virtual_controller/tcp_server.hpp"
-#include "wire_bytes.hpp"
+#include "rtde_variables.hpp"
 
 namespace metier::virtual_ur {
 

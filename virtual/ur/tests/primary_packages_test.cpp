@@ -4,7 +4,6 @@
 
 #include <map>
 
-#include "realtime_package.hpp"
 #include "robot_fixture.hpp"
 
 namespace metier::virtual_ur {

@@ -30,9 +30,11 @@ protected:
     RobotState state_;
     ControlInputs control_;
     std::vector<std::string> written_;
-    RtdeShared shared_{{5, 12, 6, 1102099},       500.0,
-                       {state_.inputs, control_}, [this](const auto& names) { written_ = names; },
-                       [](const std::string&) {}, {}};
+    RtdeShared shared_{{5, 12, 6, 1102099},
+                       500.0,
+                       {state_.inputs, control_},
+                       [this](const auto& names) { written_ = names; },
+                       {}};
     FakePeer peer_;
     RtdeSession session_{shared_, peer_};
 };

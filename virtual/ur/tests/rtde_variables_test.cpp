@@ -18,7 +18,7 @@ TEST(RtdeVariables, EveryOutputOfTheMakerIsKnownWithItsType) {
         EXPECT_EQ(variable->typeName(), type) << name;
         EXPECT_FALSE(RtdeVariable::input(name)) << name;
     }
-    EXPECT_EQ(rtdeOutputNames().size(), kOutputNames.size());
+    EXPECT_EQ(rtdeOutputs().size(), kOutputNames.size());
 }
 
 TEST(RtdeVariables, EveryInputOfTheMakerIsKnownWithItsType) {
@@ -89,12 +89,12 @@ Bytes written(RobotState& state, std::string_view input, T value, std::string_vi
     ControlInputs control;
     ByteWriter given;
     given.put(value);
-    const Bytes package = std::move(given).take();
+    const Bytes package = given.content();
     ByteReader reader(package);
     RtdeVariable::input(input)->take(reader, {state.inputs, control});
     ByteWriter answer;
     RtdeVariable::output(output)->append(state, answer);
-    return std::move(answer).take();
+    return answer.content();
 }
 
 TEST(RtdeVariables, WhatIsWrittenToAnInputRegisterIsReadBack) {
@@ -109,7 +109,7 @@ TEST(RtdeVariables, WhatIsWrittenToAnInputRegisterIsReadBack) {
                   "input_bit_registers32_to_63")}) {
         all.insert(all.end(), part.begin(), part.end());
     }
-    EXPECT_EQ(all, std::move(expected).take());
+    EXPECT_EQ(all, expected.content());
     EXPECT_TRUE(state.inputs.bits[32]);
     EXPECT_TRUE(state.inputs.bits[63]);
 }

@@ -158,7 +158,7 @@ public:
         package.put(static_cast<std::uint16_t>(payload.size() + 3))
             .put(static_cast<std::uint8_t>(type))
             .bytes(payload);
-        ASSERT_TRUE(link_.send(std::move(package).take(), in(5s)));
+        ASSERT_TRUE(link_.send(package.content(), in(5s)));
     }
     std::pair<char, Bytes> read() {
         Bytes head(3);
@@ -175,7 +175,7 @@ public:
     void setUpOutputs(double frequency, std::string_view names) {
         ByteWriter payload;
         payload.put(frequency).text(names);
-        EXPECT_EQ(ask('O', std::move(payload).take()).at(0), std::byte{1});
+        EXPECT_EQ(ask('O', payload.content()).at(0), std::byte{1});
         EXPECT_EQ(ask('S'), bytes({1}));
     }
     /// The next data package, after the recipe id.
@@ -246,7 +246,7 @@ TEST(UrController, TheSpeedSliderIsToldOnceAndNotInTheScalingOfTheLimiter) {
               bytes({1}, "UINT32,DOUBLE"));
     ByteWriter half;
     half.put(std::uint8_t{1}).put(std::uint32_t{1}).put(0.5);
-    client.sendPackage('U', std::move(half).take());
+    client.sendPackage('U', half.content());
     client.setUpOutputs(125.0, "speed_scaling,target_speed_fraction");
     double scaling = 0.0;
     double slider = 1.0;
@@ -387,12 +387,12 @@ public:
     void write(std::int32_t run) {
         ByteWriter payload;
         payload.put(std::uint8_t{1}).put(run);
-        client_.sendPackage('U', std::move(payload).take());
+        client_.sendPackage('U', payload.content());
     }
     void write(const Vector6& q) {
         ByteWriter payload;
         payload.put(std::uint8_t{2}).putAll(q);
-        client_.sendPackage('U', std::move(payload).take());
+        client_.sendPackage('U', payload.content());
     }
 
 private:
