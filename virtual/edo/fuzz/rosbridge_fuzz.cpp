@@ -14,31 +14,6 @@ using fuzz::Input;
 
 namespace {
 
-motion::RobotModel makeModel() {
-    motion::ChainDescription chain;
-    chain.cycle_time = kCycleSeconds;
-    chain.home = motion::JointVector(kArmAxes);
-    chain.cartesian_limits = {.velocity = 0.25,
-                              .acceleration = 0.12,
-                              .jerk = 2.4,
-                              .angular_velocity = 0.5,
-                              .angular_acceleration = 0.3,
-                              .angular_jerk = 6.0};
-    constexpr std::array kHeights{0.0, 0.337, 0.2105, 0.268, 0.0, 0.0};
-    for (std::size_t axis = 0; axis < kArmAxes; ++axis) {
-        motion::JointDescription joint;
-        joint.name = "J" + std::to_string(axis + 1);
-        joint.parent_from_joint.translation.z() = kHeights[axis];
-        const bool is_about_y = axis == 1 || axis == 2 || axis == 4;
-        joint.axis = is_about_y ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
-        joint.limits = {
-            .lower = -1.7, .upper = 1.7, .velocity = 0.4, .acceleration = 0.8, .jerk = 8.0};
-        chain.joints.push_back(joint);
-    }
-    chain.last_from_flange.translation.z() = 0.1745;
-    return motion::RobotModel::fromChain(std::move(chain)).value();
-}
-
 /// Requests in which % stands for a number.
 constexpr std::array<std::string_view, 15> kRequests{
     R"({"op":"publish","topic":"/bridge_init","msg":{"mode":0,"joints_mask":%}})",
@@ -115,7 +90,7 @@ private:
 /// The first byte chooses the release, the state at the start, and whether the rest is requests as
 /// text, one a line, or choices among known requests with numbers.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const motion::RobotModel kModel = makeModel();
+    static const auto kModel = motion::RobotModel::load(METIER_MODELS_DIR "/edo.toml").value();
     Input input(data, size);
     const unsigned choice = input.next();
     Session session(Software::find((choice & 1U) != 0 ? "2.4.0" : "3.2.0").value(),

@@ -3,7 +3,6 @@
 #include <span>
 #include <string_view>
 
-#include "handshake.hpp"
 #include "web_socket.hpp"
 
 using namespace metier::virtual_edo;

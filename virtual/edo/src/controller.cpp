@@ -1,12 +1,14 @@
 #include "metier/virtual_controller/controller.hpp"
 
+#include <map>
 #include <memory>
 #include <utility>
 
-#include "bridge_port.hpp"
 #include "metier/virtual_controller/cycle_timer.hpp"
 #include "metier/virtual_controller/standing_time.hpp"
+#include "metier/virtual_controller/tcp_server.hpp"
 #include "robot.hpp"
+#include "web_socket.hpp"
 
 namespace metier::virtual_edo {
 namespace {
@@ -50,43 +52,75 @@ Result<Options> readOptions(const ControllerRequest& request) {
 class EdoController final : public Controller {
 public:
     EdoController(const ControllerRequest& request, Options options)
-        : context_(request.context),
-          faults_(request.faults),
-          world_(request.world),
+        : world_(request.world),
           model_(*request.model),
-          address_(request.address),
           options_(std::move(options)),
           types_(options_.robot.software) {}
 
-    /// Errors: as BridgePort::open().
-    Result<void> start() {
+    /// Errors: as TcpServer::listen().
+    Result<void> start(const ControllerRequest& request) {
         powerOn();
-        auto opened = openPort();
-        if (opened) {
-            const std::chrono::duration<double> period(kCycleSeconds / options_.time_scale);
-            timer_ = std::make_unique<CycleTimer>(
-                context_, std::chrono::duration_cast<std::chrono::nanoseconds>(period),
-                [this] { step(); });
-        }
-        return opened;
+        METIER_ASSIGN(server_,
+                      TcpServer::listen(
+                          request.context, request.address, options_.port, request.faults,
+                          {.on_connected = [this](TcpPeer& peer) { clients_[&peer]; },
+                           .on_data = [this](TcpPeer& peer, auto bytes) { onData(peer, bytes); },
+                           .on_closed = [this](TcpPeer& peer) { onClosed(peer); }}));
+        const std::chrono::duration<double> period(kCycleSeconds / options_.time_scale);
+        timer_ = std::make_unique<CycleTimer>(
+            request.context, std::chrono::duration_cast<std::chrono::nanoseconds>(period),
+            [this] { step(); });
+        return {};
     }
 
     std::vector<InjectionHelp> injections() const override { return robot_->injections(); }
-    Result<void> inject(const Injection& injection) override { return robot_->inject(injection); }
     Json state() const override {
         Json shown = robot_->state();
-        shown["clients"] = port_->clients();
-        shown["port"] = port_->port();
+        shown["clients"] = clients_.size();
+        shown["port"] = server_->port();
         standing_.show(shown, std::chrono::steady_clock::now());
         return shown;
     }
     void restart() override {
-        port_->disconnectAll();
+        for (auto& [peer, client] : clients_) {
+            client = {};
+        }
+        server_->resetAll();
         powerOn();
-        port_->serve(*bridge_);
     }
 
 private:
+    /// A WebSocket with its name at the bridge.
+    struct Client {
+        WebSocket socket{};
+        Rosbridge::ClientId id = 0;  // 0: the handshake is not done
+    };
+
+    void onData(TcpPeer& peer, std::span<const std::byte> bytes) {
+        auto& client = clients_[&peer];
+        const auto received = client.socket.receive(bytes);
+        peer.send(received.answer);
+        if (client.id == 0 && client.socket.isOpen()) {
+            client.id = bridge_->addClient(
+                [&peer](const std::string& text) { peer.send(WebSocket::textFrame(text)); });
+        }
+        for (const auto& message : received.messages) {
+            bridge_->receive(client.id, message);
+        }
+        if (received.close) {
+            bridge_->removeClient(std::exchange(client.id, 0));
+            peer.close();
+        }
+    }
+
+    void onClosed(const TcpPeer& peer) {
+        const auto client = clients_.find(&peer);
+        if (client != clients_.end()) {
+            bridge_->removeClient(client->second.id);
+            clients_.erase(client);
+        }
+    }
+
     void powerOn() {
         robot_ = std::make_unique<Robot>(options_.robot, model_);
         bridge_ = std::make_unique<Rosbridge>(types_, robot_->graph(), started_);
@@ -94,13 +128,6 @@ private:
         robot_->connect([this](const std::string& topic,
                                const Json& message) { bridge_->publish(topic, message); },
                         [this](std::string_view topic) { return bridge_->hasSubscribers(topic); });
-    }
-
-    Result<void> openPort() {
-        METIER_ASSIGN(auto port,
-                      BridgePort::open(context_, address_, options_.port, faults_, *bridge_));
-        port_ = std::move(port);
-        return {};
     }
 
     void step() {
@@ -112,18 +139,16 @@ private:
         standing_.take(robot_->jointPosition().span(), std::chrono::steady_clock::now());
     }
 
-    asio::io_context& context_;
-    LinkFaults& faults_;
     WorldLink& world_;
     const motion::RobotModel& model_;
-    std::string address_;
     Options options_;
     MessageTypes types_;
     SteadyTime now_{};  // the robot's own, which time_scale makes faster
     UtcTime started_ = std::chrono::system_clock::now();
     std::unique_ptr<Robot> robot_;
     std::unique_ptr<Rosbridge> bridge_;
-    std::unique_ptr<BridgePort> port_;
+    std::map<const TcpPeer*, Client> clients_;
+    std::unique_ptr<TcpServer> server_;
     std::unique_ptr<CycleTimer> timer_;
     StandingTime standing_;
 };
@@ -131,7 +156,7 @@ private:
 Result<std::unique_ptr<Controller>> startEdo(const ControllerRequest& request) {
     METIER_ASSIGN(auto options, readOptions(request));
     auto controller = std::make_unique<EdoController>(request, std::move(options));
-    METIER_TRY(controller->start());
+    METIER_TRY(controller->start(request));
     return controller;
 }
 

@@ -1,5 +1,3 @@
-#include "handshake.hpp"
-
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
@@ -10,6 +8,7 @@
 #include <span>
 
 #include "base64.hpp"
+#include "web_socket.hpp"
 
 namespace metier::virtual_edo {
 namespace {
@@ -26,8 +25,7 @@ HandshakeAnswer refused(std::string_view status, std::string_view why) {
         .accepted = false};
 }
 
-}  // namespace
-
+/// The Sec-WebSocket-Accept that belongs to a Sec-WebSocket-Key.
 std::string acceptKey(std::string_view key) {
     const auto text = fmt::format("{}258EAFA5-E914-47DA-95CA-C5AB0DC85B11", key);
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
@@ -35,6 +33,8 @@ std::string acceptKey(std::string_view key) {
     EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha1(), nullptr);
     return toBase64(std::span(digest).first(size));
 }
+
+}  // namespace
 
 HandshakeAnswer answerHandshake(std::string_view request) {
     http::request_parser<http::empty_body> parser;

@@ -138,12 +138,6 @@ void JointBus::setFlag(std::size_t axis, JointFlag flag) {
     }
 }
 
-void JointBus::clearFlag(std::size_t axis, JointFlag flag) {
-    if (axis < joints_.size()) {
-        joints_[axis].flags &= static_cast<std::uint16_t>(~bit(flag));
-    }
-}
-
 void JointBus::step(std::optional<double> part_width) {
     just_calibrated_ = false;
     if (pulse_left_ > 0 && --pulse_left_ == 0) {

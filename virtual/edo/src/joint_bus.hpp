@@ -69,7 +69,6 @@ public:
 
     // Accidents.
     void setFlag(std::size_t axis, JointFlag flag);
-    void clearFlag(std::size_t axis, JointFlag flag);
     enum class Bus : std::uint8_t { speaking, silent };
     /// \param mask of the joints that no longer report
     /// \param bus  whether anything is reported at all

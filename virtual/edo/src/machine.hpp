@@ -6,11 +6,30 @@
 #include <optional>
 
 #include "codes.hpp"
-#include "command_wait.hpp"
 #include "joint_bus.hpp"
 #include "movement.hpp"
 
 namespace metier::virtual_edo {
+
+/// Waits until every addressed joint has raised its acknowledgement and dropped it again.
+class CommandWait {
+public:
+    /// \param axes how many axes are awaited, of those in the mask
+    void begin(std::uint64_t mask, std::size_t axes);
+
+    /// One cycle's report. \return whether all have acknowledged
+    bool take(const BusReport& report);
+
+    /// One cycle. \return whether 10 s are over
+    bool expired() { return ++age_ >= kLongestWait; }
+
+private:
+    static constexpr int kLongestWait = 1000;  // cycles
+    enum class Phase : std::uint8_t { done, low, raised };
+
+    std::array<Phase, kMostAxes> phases_{};
+    int age_ = 0;
+};
 
 /// Parts of the robot on which the state machine acts.
 class MachinePeers {

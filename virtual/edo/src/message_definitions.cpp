@@ -1,148 +1,105 @@
-#include "message_definitions.hpp"
-
-#include <string_view>
+#include "message_types.hpp"
+#include "metier/base/text.hpp"
 
 namespace metier::virtual_edo {
 namespace {
 
-std::vector<Field> fieldsOf(std::string_view type, std::vector<std::string> names) {
-    std::vector<Field> fields;
-    for (auto& name : names) {
-        fields.push_back({std::move(name), std::string(type)});
-    }
-    return fields;
+// Every type with the fields that all releases have: their type, then their names. The answer of a
+// service comes behind its request.
+constexpr std::string_view kTypes =
+    R"(JointInit: uint8 mode; uint64 joints_mask; float32 reduction_factor
+JointReset: uint64 joints_mask; uint32 disengage_steps; float32 disengage_offset
+JointCalibration: uint64 joints_mask
+JointConfiguration: float32 kp ti td sat kff max kpv tiv tdv satv kffv maxv
+JointConfiguration: float32 kpt tit tdt satt kfft maxt kt
+JointConfigurationArray: uint64 joints_mask; JointConfiguration[] joints
+CartesianPose: float32 x y z a e r; string config_flags
+Frame: float32 x y z a e r
+Payload: float32 mass x y z xx yy zz xy xz yz
+Point: uint8 data_type; CartesianPose cartesian_data; uint64 joints_mask; float32[] joints_data
+MovementCommand: uint8 move_command move_type ovr delay remote_tool
+MovementCommand: float32 cartesian_linear_speed; Point target via; Frame tool frame
+JointControl: float32 position velocity current ff_velocity ff_current
+JointControlArray: uint8 size; JointControl[] joints
+JointState: float32 position velocity current
+JointStateArray: uint64 joints_mask; JointState[] joints
+JointValue: float32[7] position ff_velocity ff_current
+MachineState: uint8 current_state; uint32 opcode
+MovementFeedback: int8 type data
+AppState: float32 position velocity
+AppStateArray: uint32 joints_mask; AppState[] joints
+CollisionThreshold: uint64 joints_mask; float32 threshold
+CollisionAlgoToState: uint8 joints_mask; bool coll_flag
+BrakesCheckAck: int8 state; uint8 mask
+JointFwVersion: uint8 id majorRev; uint16 minorRev revision svn
+JointFwVersionArray: JointFwVersion[] joints
+NodeSwVersion: uint16 id; string version
+NodeSwVersionArray: NodeSwVersion[] nodes
+JointsPositions: uint64 joints_mask; uint8[] joints_type; float32[] positions
+ControlSwitch: uint8 mode --- uint8 result
+JointsNumber: --- int8 counter; uint32 joints_mask joints_aux_mask
+SoftwareVersion: --- NodeSwVersionArray version; int8 tool_id
+DirectKinematics: JointsPositions positions --- CartesianPose cartesian_pose
+InverseKinematics: CartesianPose cartesian_pose --- JointsPositions positions
+LoadConfigurationFile: --- uint8 result
+ToolConfiguration: --- int8 tool_id
+CalibCounter: bool increment --- uint64 cnt
+SystemCommandSrv: uint8 command; string data --- string res
+std_msgs/Empty:
+std_srvs/Empty: ---
+time: uint32 secs nsecs
+rosapi/Topics: --- string[] topics types
+rosapi/TopicType: string topic --- string type
+rosapi/TopicsForType: string type --- string[] topics
+rosapi/Services: --- string[] services
+rosapi/ServiceType: string service --- string type
+rosapi/GetTime: --- time time)";
+
+/// The robot's own types begin with a capital letter.
+std::string wholeName(std::string_view name) {
+    const bool own = name.front() >= 'A' && name.front() <= 'Z';
+    return (own ? "edo_core_msgs/" : "") + std::string(name);
 }
 
-std::string edo(std::string_view name) {
-    return "edo_core_msgs/" + std::string(name);
-}
-
-void addStandard(Definitions& types) {
-    for (const char* name : {"Bool", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64",
-                             "UInt64", "Float32", "Float64", "String"}) {
-        std::string primitive = name;
-        for (auto& character : primitive) {
-            character = static_cast<char>(character | 0x20);  // capital letters to small ones
+/// \param text "float32 x y; string name"
+void addFields(std::vector<Field>& fields, std::string_view text) {
+    for (const auto group : split(text, ';')) {
+        const auto words = split(trimmed(group), ' ');
+        for (std::size_t i = 1; i < words.size(); ++i) {
+            fields.push_back({std::string(words[i]), wholeName(words[0])});
         }
-        types["std_msgs/" + std::string(name)] = {{"data", primitive}};
     }
-    types["std_msgs/Empty"] = {};
-    types["std_srvs/Empty.Request"] = {};
-    types["std_srvs/Empty.Response"] = {};
-}
-
-void addCommands(Definitions& types, const Software& software) {
-    types[edo("JointInit")] = {
-        {"mode", "uint8"}, {"joints_mask", "uint64"}, {"reduction_factor", "float32"}};
-    types[edo("JointReset")] = {
-        {"joints_mask", "uint64"}, {"disengage_steps", "uint32"}, {"disengage_offset", "float32"}};
-    types[edo("JointCalibration")] = {{"joints_mask", "uint64"}};
-    types[edo("JointConfiguration")] =
-        fieldsOf("float32", {"kp", "ti", "td", "sat", "kff", "max", "kpv", "tiv", "tdv", "satv",
-                             "kffv", "maxv", "kpt", "tit", "tdt", "satt", "kfft", "maxt", "kt"});
-    types[edo("JointConfigurationArray")] = {{"joints_mask", "uint64"},
-                                             {"joints", edo("JointConfiguration[]")}};
-    types[edo("CartesianPose")] = fieldsOf("float32", {"x", "y", "z", "a", "e", "r"});
-    types[edo("CartesianPose")].push_back({"config_flags", "string"});
-    types[edo("Frame")] = fieldsOf("float32", {"x", "y", "z", "a", "e", "r"});
-    types[edo("Payload")] =
-        fieldsOf("float32", {"mass", "x", "y", "z", "xx", "yy", "zz", "xy", "xz", "yz"});
-    types[edo("Point")] = {{"data_type", "uint8"},
-                           {"cartesian_data", edo("CartesianPose")},
-                           {"joints_mask", "uint64"},
-                           {"joints_data", "float32[]"}};
-    auto& command = types[edo("MovementCommand")];
-    command = fieldsOf("uint8", {"move_command", "move_type", "ovr", "delay", "remote_tool"});
-    command.insert(command.end(), {{"cartesian_linear_speed", "float32"},
-                                   {"target", edo("Point")},
-                                   {"via", edo("Point")},
-                                   {"tool", edo("Frame")},
-                                   {"frame", edo("Frame")}});
-    if (software.external_control) {
-        command.push_back({"payload", edo("Payload")});
-    }
-}
-
-void addStates(Definitions& types, const Software& software) {
-    types[edo("JointControl")] =
-        fieldsOf("float32", {"position", "velocity", "current", "ff_velocity", "ff_current"});
-    types[edo("JointControlArray")] = {{"size", "uint8"}, {"joints", edo("JointControl[]")}};
-    types[edo("JointState")] = fieldsOf("float32", {"position", "velocity", "current"});
-    types[edo("JointState")].push_back(
-        {"commandFlag", software.external_control ? "uint16" : "uint8"});
-    if (software.residuals) {
-        types[edo("JointControl")].push_back({"R_rasp", "float32"});
-        types[edo("JointState")].push_back({"R_jnt", "float32"});
-    }
-    types[edo("JointStateArray")] = {{"joints_mask", "uint64"}, {"joints", edo("JointState[]")}};
-    types[edo("JointValue")] = fieldsOf("float32[7]", {"position", "ff_velocity", "ff_current"});
-    types[edo("MachineState")] = {{"current_state", "uint8"}, {"opcode", "uint32"}};
-    types[edo("MovementFeedback")] = fieldsOf("int8", {"type", "data"});
-    types[edo("AppState")] = fieldsOf("float32", {"position", "velocity"});
-    types[edo("AppStateArray")] = {{"joints_mask", "uint32"}, {"joints", edo("AppState[]")}};
-    types[edo("CollisionThreshold")] = {{"joints_mask", "uint64"}, {"threshold", "float32"}};
-    types[edo("CollisionAlgoToState")] = {{"joints_mask", "uint8"}, {"coll_flag", "bool"}};
-    types[edo("BrakesCheckAck")] = {{"state", "int8"}, {"mask", "uint8"}};
-    types[edo("JointFwVersion")] = {{"id", "uint8"},
-                                    {"majorRev", "uint8"},
-                                    {"minorRev", "uint16"},
-                                    {"revision", "uint16"},
-                                    {"svn", "uint16"}};
-    types[edo("JointFwVersionArray")] = {{"joints", edo("JointFwVersion[]")}};
-    types[edo("NodeSwVersion")] = {{"id", "uint16"}, {"version", "string"}};
-    types[edo("NodeSwVersionArray")] = {{"nodes", edo("NodeSwVersion[]")}};
-    types[edo("JointsPositions")] = {
-        {"joints_mask", "uint64"}, {"joints_type", "uint8[]"}, {"positions", "float32[]"}};
-}
-
-void addServices(Definitions& types) {
-    types[edo("ControlSwitch.Request")] = {{"mode", "uint8"}};
-    types[edo("ControlSwitch.Response")] = {{"result", "uint8"}};
-    types[edo("JointsNumber.Request")] = {};
-    types[edo("JointsNumber.Response")] = {
-        {"counter", "int8"}, {"joints_mask", "uint32"}, {"joints_aux_mask", "uint32"}};
-    types[edo("SoftwareVersion.Request")] = {};
-    types[edo("SoftwareVersion.Response")] = {{"version", edo("NodeSwVersionArray")},
-                                              {"tool_id", "int8"}};
-    types[edo("DirectKinematics.Request")] = {{"positions", edo("JointsPositions")}};
-    types[edo("DirectKinematics.Response")] = {{"cartesian_pose", edo("CartesianPose")}};
-    types[edo("InverseKinematics.Request")] = {{"cartesian_pose", edo("CartesianPose")}};
-    types[edo("InverseKinematics.Response")] = {{"positions", edo("JointsPositions")}};
-    types[edo("LoadConfigurationFile.Request")] = {};
-    types[edo("LoadConfigurationFile.Response")] = {{"result", "uint8"}};
-    types[edo("ToolConfiguration.Request")] = {};
-    types[edo("ToolConfiguration.Response")] = {{"tool_id", "int8"}};
-    types[edo("CalibCounter.Request")] = {{"increment", "bool"}};
-    types[edo("CalibCounter.Response")] = {{"cnt", "uint64"}};
-    types[edo("SystemCommandSrv.Request")] = {{"command", "uint8"}, {"data", "string"}};
-    types[edo("SystemCommandSrv.Response")] = {{"res", "string"}};
-}
-
-void addRosApi(Definitions& types) {
-    types["time"] = fieldsOf("uint32", {"secs", "nsecs"});
-    types["rosapi/Topics.Request"] = {};
-    types["rosapi/Topics.Response"] = fieldsOf("string[]", {"topics", "types"});
-    types["rosapi/TopicType.Request"] = {{"topic", "string"}};
-    types["rosapi/TopicType.Response"] = {{"type", "string"}};
-    types["rosapi/TopicsForType.Request"] = {{"type", "string"}};
-    types["rosapi/TopicsForType.Response"] = {{"topics", "string[]"}};
-    types["rosapi/Services.Request"] = {};
-    types["rosapi/Services.Response"] = {{"services", "string[]"}};
-    types["rosapi/ServiceType.Request"] = {{"service", "string"}};
-    types["rosapi/ServiceType.Response"] = {{"type", "string"}};
-    types["rosapi/GetTime.Request"] = {};
-    types["rosapi/GetTime.Response"] = {{"time", "time"}};
 }
 
 }  // namespace
 
 Definitions definitionsFor(const Software& software) {
+    constexpr std::string_view kAnswer = "---";
     Definitions types;
-    addStandard(types);
-    addCommands(types, software);
-    addStates(types, software);
-    addServices(types);
-    addRosApi(types);
+    for (const auto line : split(kTypes, '\n')) {
+        const auto colon = line.find(':');
+        const auto name = wholeName(line.substr(0, colon));
+        const auto fields = line.substr(colon + 1);
+        if (const auto answer = fields.find(kAnswer); answer != std::string_view::npos) {
+            addFields(types[name + ".Request"], fields.substr(0, answer));
+            addFields(types[name + ".Response"], fields.substr(answer + kAnswer.size()));
+        } else {
+            addFields(types[name], fields);
+        }
+    }
+    for (const std::string name : {"Bool", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32",
+                                   "Int64", "UInt64", "Float32", "Float64", "String"}) {
+        types["std_msgs/" + name] = {{"data", inLowerCase(name)}};
+    }
+    auto& joint_state = types[wholeName("JointState")];
+    joint_state.push_back({"commandFlag", software.external_control ? "uint16" : "uint8"});
+    if (software.residuals) {
+        joint_state.push_back({"R_jnt", "float32"});
+        types[wholeName("JointControl")].push_back({"R_rasp", "float32"});
+    }
+    if (software.external_control) {
+        types[wholeName("MovementCommand")].push_back({"payload", wholeName("Payload")});
+    }
     return types;
 }
 

@@ -1,12 +1,12 @@
 #include "message_types.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "base64.hpp"
-#include "message_definitions.hpp"
 
 namespace metier::virtual_edo {
 namespace {
@@ -25,12 +25,8 @@ constexpr std::array kIntegers{
 };
 
 const IntegerType* integerType(std::string_view name) {
-    for (const auto& type : kIntegers) {
-        if (type.name == name) {
-            return &type;
-        }
-    }
-    return nullptr;
+    const auto* const type = std::ranges::find(kIntegers, name, &IntegerType::name);
+    return type == kIntegers.end() ? nullptr : type;
 }
 
 bool isFloat(std::string_view type) {

@@ -21,6 +21,11 @@ struct Field {
     std::string type;
 };
 
+using Definitions = std::map<std::string, std::vector<Field>, std::less<>>;
+
+/// Every message and service type of one release.
+Definitions definitionsFor(const Software& software);
+
 /// The message types of one release, and rosbridge's rules for JSON of them.
 ///
 /// Threading: immutable, any thread.
@@ -53,7 +58,7 @@ private:
     Result<Json> completeObject(std::string_view type, const Json& value, const Place& place) const;
     Json defaultOf(std::string_view type) const;
 
-    std::map<std::string, std::vector<Field>, std::less<>> types_;
+    Definitions types_;
 };
 
 /// A number for JSON: NaN and infinity become null, as rosbridge sends them.

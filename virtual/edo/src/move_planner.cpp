@@ -126,8 +126,8 @@ Result<Segment> MovePlanner::planJoints(const AxisValues& start, const AxisValue
     return Segment(std::move(path), profile);
 }
 
-SpeedProfile MovePlanner::profileFor(const std::vector<AxisValues>& path, double length,
-                                     double angle) const {
+virtual_controller::Trapezoid MovePlanner::profileFor(const std::vector<AxisValues>& path,
+                                                      double length, double angle) const {
     const auto& tool = model_.cartesianLimits();
     // Lets a motion without a way take a cycle.
     double velocity = 1.0 / kCycleSeconds;
@@ -148,7 +148,7 @@ SpeedProfile MovePlanner::profileFor(const std::vector<AxisValues>& path, double
     }
     limit(length, tool.velocity, tool.acceleration);
     limit(angle, tool.angular_velocity, tool.angular_acceleration);
-    return {velocity * override_, acceleration * override_};
+    return {1.0, velocity * override_, acceleration * override_};
 }
 
 Result<Segment> MovePlanner::follow(const AxisValues& start, const AxisValues& target,

@@ -53,7 +53,8 @@ private:
     AxisValues jogTarget(const AxisValues& start, std::size_t axes, const Point& point);
     Result<Segment> planLinearJog(const AxisValues& start, const CartesianPose& direction);
     motion::Pose flangeGoal(const CartesianPose& target) const;
-    SpeedProfile profileFor(const std::vector<AxisValues>& path, double length, double angle) const;
+    virtual_controller::Trapezoid profileFor(const std::vector<AxisValues>& path, double length,
+                                             double angle) const;
     void setReference(const Movement& movement);
 
     const motion::RobotModel& model_;

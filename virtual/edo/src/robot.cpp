@@ -71,8 +71,7 @@ WorldReport Robot::step(const WorldEffect& effect) {
         publishJointStates(*report);
     }
     if (cycles_ % kSlow == 0) {
-        publishMachineState();
-        publishPose();
+        publishSlowTopics();
     }
     const AxisValues position = bus_.truePosition();
     WorldReport shown{.base_from_flange = node_.planner().baseFromFlange(position)};
@@ -170,18 +169,14 @@ void Robot::publishJointStates(const BusReport& report) {
     }
 }
 
-void Robot::publishMachineState() {
+void Robot::publishSlowTopics() {
     if (wants("/machine_state")) {
         send("/machine_state", {{"current_state", static_cast<int>(machine_.state())},
                                 {"opcode", machine_.opcode()}});
     }
-}
-
-void Robot::publishPose() {
-    if (!node_.publishesPose() || !wants("/cartesian_pose")) {
-        return;
+    if (node_.publishesPose() && wants("/cartesian_pose")) {
+        send("/cartesian_pose", toJson(node_.pose()));
     }
-    send("/cartesian_pose", toJson(node_.pose()));
 }
 
 void Robot::publishFeedback(Feedback feedback) {

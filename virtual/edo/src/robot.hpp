@@ -49,9 +49,7 @@ public:
     /// \return what it shows the world
     virtual_controller::WorldReport step(const virtual_controller::WorldEffect& effect);
 
-    std::vector<virtual_controller::InjectionHelp> injections() const;
-    /// Errors: not_found, invalid_argument.
-    Result<void> inject(const virtual_controller::Injection& injection);
+    std::vector<virtual_controller::InjectionHelp> injections();
     Json state() const;
     /// True joint position of the arm [rad].
     motion::JointVector jointPosition() const;
@@ -69,8 +67,7 @@ private:
     void publishJointStates(const BusReport& report);
     void publishControl();
     bool nodeCommands() const;
-    void publishMachineState();
-    void publishPose();
+    void publishSlowTopics();
     void sayMode();
     void send(const std::string& topic, const Json& message);
     bool wants(std::string_view topic) const {
@@ -90,8 +87,8 @@ private:
     std::int8_t tool() const;
     std::vector<double> targets() const;
 
-    Result<void> setJointFault(const virtual_controller::Injection& injection,
-                               std::initializer_list<JointFlag> flags);
+    virtual_controller::InjectionHelp jointFault(const char* name, const char* help,
+                                                 std::vector<JointFlag> flags);
     Result<void> silence(const virtual_controller::Injection& injection);
     std::optional<double> partWidth(const virtual_controller::WorldEffect& effect);
 

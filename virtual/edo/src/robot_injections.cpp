@@ -6,8 +6,7 @@
 namespace metier::virtual_edo {
 namespace {
 
-using virtual_controller::Injection;
-using virtual_controller::InjectionHelp;
+using namespace virtual_controller;
 
 // Time for which an injected collision presses on the arm [cycles].
 constexpr int kContactCycles = 20;
@@ -26,63 +25,49 @@ Result<std::size_t> numberFrom(const Injection& injection, std::size_t low, std:
 
 }  // namespace
 
-std::vector<InjectionHelp> Robot::injections() const {
+std::vector<InjectionHelp> Robot::injections() {
     return {
-        {"emergency-stop", "press the emergency stop: brakes on, no reset works"},
-        {"release-emergency-stop", "release it; the brakes stay on until a reset"},
-        {"brake", "open the power stages, as the joints do when something is wrong"},
-        {"collision", "press on the arm for 0.2 s; noticed unless collision monitoring is off"},
-        {"following-error", "AXIS (1 to 6) reports a following error and brakes"},
-        {"overcurrent", "AXIS (1 to 6) reports too much current: state ERROR"},
-        {"limit", "AXIS (1 to 6) reports the end of its stroke and brakes"},
-        {"joint-silent",
-         "AXIS (1 to 7) no longer reports; 0: all do again; all: the bus is silent"},
-        {"uncalibrate", "the six axes lose their calibration"},
-        {"drop-next", "the next N commands (1 to 1000000) are lost without a word"},
-        {"lost-part", "the part slips out of the jaws"},
+        {"emergency-stop", "press the emergency stop: brakes on, no reset works",
+         always([this] { bus_.pressEmergencyStop(); })},
+        {"release-emergency-stop", "release it; the brakes stay on until a reset",
+         always([this] { bus_.releaseEmergencyStop(); })},
+        {"brake", "open the power stages, as the joints do when something is wrong",
+         always([this] { bus_.brake(); })},
+        {"collision", "press on the arm for 0.2 s; noticed unless collision monitoring is off",
+         always([this] { contact_left_ = kContactCycles; })},
+        jointFault("following-error", "AXIS (1 to 6) reports a following error and brakes",
+                   {JointFlag::following_error, JointFlag::power_stage_open}),
+        jointFault("overcurrent", "AXIS (1 to 6) reports too much current: state ERROR",
+                   {JointFlag::overcurrent}),
+        jointFault("limit", "AXIS (1 to 6) reports the end of its stroke and brakes",
+                   {JointFlag::stroke_end, JointFlag::power_stage_open}),
+        {"joint-silent", "AXIS (1 to 7) no longer reports; 0: all do again; all: the bus is silent",
+         [this](const std::string& value) {
+             return silence({"joint-silent", value});
+         }},
+        {"uncalibrate", "the six axes lose their calibration", always([this] {
+             for (std::size_t axis = 0; axis < kArmAxes; ++axis) {
+                 bus_.setFlag(axis, JointFlag::uncalibrated);
+             }
+         })},
+        {"drop-next", "the next N commands (1 to 1000000) are lost without a word",
+         [this](const std::string& value) {
+             return numberFrom({"drop-next", value}, 1, kMostDropped).map([this](auto count) {
+                 commands_to_drop_ = count;
+             });
+         }},
+        {"lost-part", "the part slips out of the jaws", always([this] { part_lost_ = true; })},
     };
 }
 
-Result<void> Robot::inject(const Injection& injection) {
-    const auto& name = injection.name;
-    if (name == "emergency-stop") {
-        bus_.pressEmergencyStop();
-    } else if (name == "release-emergency-stop") {
-        bus_.releaseEmergencyStop();
-    } else if (name == "brake") {
-        bus_.brake();
-    } else if (name == "collision") {
-        contact_left_ = kContactCycles;
-    } else if (name == "following-error") {
-        return setJointFault(injection, {JointFlag::following_error, JointFlag::power_stage_open});
-    } else if (name == "overcurrent") {
-        return setJointFault(injection, {JointFlag::overcurrent});
-    } else if (name == "limit") {
-        return setJointFault(injection, {JointFlag::stroke_end, JointFlag::power_stage_open});
-    } else if (name == "joint-silent") {
-        return silence(injection);
-    } else if (name == "uncalibrate") {
-        for (std::size_t axis = 0; axis < kArmAxes; ++axis) {
-            bus_.setFlag(axis, JointFlag::uncalibrated);
-        }
-    } else if (name == "lost-part") {
-        part_lost_ = true;
-    } else if (name == "drop-next") {
-        METIER_ASSIGN(const auto count, numberFrom(injection, 1, kMostDropped));
-        commands_to_drop_ = count;
-    } else {
-        return fail(Errc::not_found, fmt::format("an e.DO has no injection \"{}\"", name));
-    }
-    return {};
-}
-
-Result<void> Robot::setJointFault(const Injection& injection,
-                                  std::initializer_list<JointFlag> flags) {
-    METIER_ASSIGN(const auto axis, numberFrom(injection, 1, kArmAxes));
-    for (const auto flag : flags) {
-        bus_.setFlag(axis - 1, flag);
-    }
-    return {};
+InjectionHelp Robot::jointFault(const char* name, const char* help, std::vector<JointFlag> flags) {
+    return {name, help, [this, name, flags = std::move(flags)](const std::string& value) {
+                return numberFrom({name, value}, 1, kArmAxes).map([&](std::size_t axis) {
+                    for (const auto flag : flags) {
+                        bus_.setFlag(axis - 1, flag);
+                    }
+                });
+            }};
 }
 
 Result<void> Robot::silence(const Injection& injection) {

@@ -1,50 +1,11 @@
-#include "ros_api.hpp"
-
 #include <chrono>
 #include <string>
 #include <utility>
 
+#include "rosbridge.hpp"
+
 namespace metier::virtual_edo {
 namespace {
-
-Json topicsAndTypes(const RosGraph& graph) {
-    Json names = Json::array();
-    Json types = Json::array();
-    for (const auto& [name, type] : graph.topics) {
-        names.push_back(name);
-        types.push_back(type);
-    }
-    return Json::object({{"topics", names}, {"types", types}});
-}
-
-/// Nothing is known of a topic: the type is empty.
-Json topicType(const RosGraph& graph, const std::string& topic) {
-    const auto known = graph.topics.find(topic);
-    return Json::object({{"type", known == graph.topics.end() ? "" : known->second}});
-}
-
-Json topicsForType(const RosGraph& graph, const std::string& wanted) {
-    Json names = Json::array();
-    for (const auto& [name, type] : graph.topics) {
-        if (type == wanted) {
-            names.push_back(name);
-        }
-    }
-    return Json::object({{"topics", names}});
-}
-
-Json services(const RosGraph& graph) {
-    Json names = Json::array();
-    for (const auto& [name, service] : graph.services) {
-        names.push_back(name);
-    }
-    return Json::object({{"services", names}});
-}
-
-Json serviceType(const RosGraph& graph, const std::string& service) {
-    const auto known = graph.services.find(service);
-    return Json::object({{"type", known == graph.services.end() ? "" : known->second.type}});
-}
 
 Json rosTime(UtcTime time) {
     using std::chrono::duration_cast;
@@ -65,16 +26,39 @@ void serveRosApi(RosGraph& graph, std::function<UtcTime()> now) {
                                   return answer(arguments);
                               }});
     };
-    serve("topics", "Topics", [&graph](const Json&) { return topicsAndTypes(graph); });
+    serve("topics", "Topics", [&graph](const Json&) {
+        Json names = Json::array();
+        Json types = Json::array();
+        for (const auto& [name, type] : graph.topics) {
+            names.push_back(name);
+            types.push_back(type);
+        }
+        return Json::object({{"topics", names}, {"types", types}});
+    });
+    // The type of an unknown topic or service is empty.
     serve("topic_type", "TopicType", [&graph](const Json& arguments) {
-        return topicType(graph, arguments["topic"].get<std::string>());
+        const auto known = graph.topics.find(arguments["topic"].get<std::string>());
+        return Json::object({{"type", known == graph.topics.end() ? "" : known->second}});
     });
     serve("topics_for_type", "TopicsForType", [&graph](const Json& arguments) {
-        return topicsForType(graph, arguments["type"].get<std::string>());
+        Json names = Json::array();
+        for (const auto& [name, type] : graph.topics) {
+            if (type == arguments["type"].get<std::string>()) {
+                names.push_back(name);
+            }
+        }
+        return Json::object({{"topics", names}});
     });
-    serve("services", "Services", [&graph](const Json&) { return services(graph); });
+    serve("services", "Services", [&graph](const Json&) {
+        Json names = Json::array();
+        for (const auto& [name, service] : graph.services) {
+            names.push_back(name);
+        }
+        return Json::object({{"services", names}});
+    });
     serve("service_type", "ServiceType", [&graph](const Json& arguments) {
-        return serviceType(graph, arguments["service"].get<std::string>());
+        const auto known = graph.services.find(arguments["service"].get<std::string>());
+        return Json::object({{"type", known == graph.services.end() ? "" : known->second.type}});
     });
     serve("get_time", "GetTime", [now = std::move(now)](const Json&) {
         return Json::object({{"time", rosTime(now())}});

@@ -4,9 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "json_text.hpp"
-#include "request_fields.hpp"
-#include "ros_api.hpp"
+#include "rosbridge_json.hpp"
 
 namespace metier::virtual_edo {
 namespace {
@@ -146,22 +144,19 @@ Result<void> Rosbridge::publishFrom(Client&, const Json& request) {
 
 Result<void> Rosbridge::subscribe(Client& client, const Json& request) {
     METIER_ASSIGN(const auto topic, requiredText(request, "topic"));
-    const auto throttle = optionalCount(request, "throttle_rate");
-    const auto queue = optionalCount(request, "queue_length");
-    const auto compression = optionalText(request, "compression");
-    if (!throttle || !queue || !compression) {
-        return fail(!throttle ? throttle.error() : (!queue ? queue.error() : compression.error()));
-    }
+    METIER_ASSIGN(const auto throttle, optionalCount(request, "throttle_rate"));
+    METIER_ASSIGN(const auto queue, optionalCount(request, "queue_length"));
+    METIER_ASSIGN(const auto compression, optionalText(request, "compression"));
     METIER_TRY(establish(topic, request));
     auto& wishes = client.subscriptions[topic].wishes;
     if (wishes.size() < kMost) {
-        wishes[requestId(request)] = {.throttle_ms = *throttle, .queue_length = *queue};
+        wishes[requestId(request)] = {.throttle_ms = throttle, .queue_length = queue};
     }
-    if (!compression->empty() && *compression != "none") {
+    if (!compression.empty() && compression != "none") {
         // Clients recognise a compressed message by its op, so they understand an uncompressed one.
         sendStatus(client,
                    fmt::format("subscribe: there is no compression {}: {} is sent without",
-                               *compression, topic),
+                               compression, topic),
                    request);
     }
     return {};

@@ -30,6 +30,15 @@ struct RosGraph {
     std::function<void(const std::string& topic, const Json& message)> on_message;
 };
 
+/// Adds the services of the node rosapi, by which clients look around: topics, services, types and
+/// the time.
+///
+/// \param graph must stay at its address as long as it is served; entries added later are served,
+/// too
+/// Source: RobotWebTools/rosbridge_suite (ROS 1), rosapi/srv/*.srv and scripts/rosapi_node, which
+///         rosbridge_websocket.launch starts.
+void serveRosApi(RosGraph& graph, std::function<UtcTime()> now);
+
 /// The rosbridge protocol, version 2, between clients and the robot: JSON in, JSON out, no sockets.
 ///
 /// An error of a client is answered by an error status, and never harms another client.

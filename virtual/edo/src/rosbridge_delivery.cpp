@@ -1,15 +1,20 @@
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
-#include "json_text.hpp"
-#include "request_fields.hpp"
 #include "rosbridge.hpp"
+#include "rosbridge_json.hpp"
 
 namespace metier::virtual_edo {
 namespace {
 
 /// Most messages that wait for one subscription.
 constexpr std::int64_t kLongestQueue = 256;
+
+template <typename Wishes, typename Member>
+std::int64_t leastOf(const Wishes& wishes, Member member) {
+    return std::ranges::min(wishes | std::views::values | std::views::transform(member));
+}
 
 }  // namespace
 
@@ -34,17 +39,12 @@ void Rosbridge::publish(const std::string& topic, const Json& message) {
 }
 
 std::chrono::milliseconds Rosbridge::Subscription::throttle() const {
-    const auto least = std::min_element(wishes.begin(), wishes.end(), [](auto& a, auto& b) {
-        return a.second.throttle_ms < b.second.throttle_ms;
-    });
-    return std::chrono::milliseconds(least->second.throttle_ms);
+    return std::chrono::milliseconds(leastOf(wishes, &SubscriptionWish::throttle_ms));
 }
 
 std::size_t Rosbridge::Subscription::queueLength() const {
-    const auto least = std::min_element(wishes.begin(), wishes.end(), [](auto& a, auto& b) {
-        return a.second.queue_length < b.second.queue_length;
-    });
-    return static_cast<std::size_t>(std::min(least->second.queue_length, kLongestQueue));
+    const auto least = leastOf(wishes, &SubscriptionWish::queue_length);
+    return static_cast<std::size_t>(std::min(least, kLongestQueue));
 }
 
 void Rosbridge::deliver(Client& client, Subscription& subscription, const std::string& text) {

@@ -1,5 +1,7 @@
 #include "software.hpp"
 
+#include <algorithm>
+
 namespace metier::virtual_edo {
 
 Result<Software> Software::find(std::string_view version) {
@@ -9,10 +11,9 @@ Result<Software> Software::find(std::string_view version) {
         {.version = "3.1.2", .external_control = true, .residuals = true},
         {.version = "3.2.0", .external_control = true, .residuals = true},
     };
-    for (const auto& release : kReleases) {
-        if (release.version == version) {
-            return release;
-        }
+    const auto release = std::ranges::find(kReleases, version, &Software::version);
+    if (release != kReleases.end()) {
+        return *release;
     }
     return fail(Errc::not_found, fmt::format("'{}' is no release; there are 2.4.0, 3.0.1, 3.1.2 "
                                              "and 3.2.0",

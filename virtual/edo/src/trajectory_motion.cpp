@@ -39,17 +39,13 @@ AxisValues TrajectoryNode::position() const {
     return values;
 }
 
-void TrajectoryNode::advanceRate() {
-    const double change = kCycleSeconds / kStopTime;
-    rate_ = std::clamp(rate_ + (stopping_ ? -change : change), 0.0, 1.0);
-}
-
 void TrajectoryNode::advance() {
     if (running_.empty()) {
         mode_ = AlgorithmMode::finished;
         return;
     }
-    advanceRate();
+    const double change = kCycleSeconds / kStopTime;
+    rate_ = std::clamp(rate_ + (stopping_ ? -change : change), 0.0, 1.0);
     time_ += rate_ * kCycleSeconds;
     const AxisValues next = position();
     for (std::size_t axis = 0; axis < kMostAxes; ++axis) {

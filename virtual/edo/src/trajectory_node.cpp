@@ -148,10 +148,9 @@ void TrajectoryNode::takeControl(AlgorithmMode mode) {
 }
 
 void TrajectoryNode::giveControlBack() {
-    dropAll(FeedbackData::dropped_by_control);
-    holdMeasured();
     // Older software waits for the next joint state.
-    mode_ = software_.external_control ? AlgorithmMode::initialised : AlgorithmMode::uninitialised;
+    takeControl(software_.external_control ? AlgorithmMode::initialised
+                                           : AlgorithmMode::uninitialised);
 }
 
 void TrajectoryNode::externalControl(const AxisValues& position, const AxisValues& velocity) {

@@ -86,7 +86,6 @@ private:
     void startJog(const Movement& movement);
     void append(Segment segment, std::uint8_t delay);
     void advance();
-    void advanceRate();
     void dropFinished();
     void finishLast(std::uint8_t delay);
     void onStopped();

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "handshake.hpp"
 #include "metier/base/text.hpp"
 
 namespace metier::virtual_edo {
@@ -49,11 +48,6 @@ std::string frame(std::uint8_t opcode, std::string_view payload) {
         append(8);
     }
     return bytes.append(payload);
-}
-
-std::string closeFrame(std::uint16_t status) {
-    return frame(Opcode::close,
-                 std::string{static_cast<char>(status >> 8), static_cast<char>(status & 0xFFU)});
 }
 
 /// Status codes that a client may send.
@@ -153,16 +147,12 @@ bool WebSocket::takeFrame(Received& received) {
         taken.payload[i] = static_cast<char>(taken.payload[i] ^ incoming_[header.size - 4 + i % 4]);
     }
     incoming_.erase(0, header.size + header.length);
-    onFrame(std::move(taken), received);
-    return true;
-}
-
-void WebSocket::onFrame(Frame taken, Received& received) {
-    if ((taken.opcode & 0x8U) != 0) {
+    if (is_control) {
         onControl(taken, received);
     } else {
-        onData(std::move(taken), received);
+        onData(taken, received);
     }
+    return true;
 }
 
 void WebSocket::onControl(const Frame& taken, Received& received) {
@@ -185,7 +175,7 @@ void WebSocket::onControl(const Frame& taken, Received& received) {
     received.close = true;
 }
 
-void WebSocket::onData(Frame taken, Received& received) {
+void WebSocket::onData(const Frame& taken, Received& received) {
     if ((taken.opcode == Opcode::continuation) != fragmented_) {
         fail(kProtocolError, received);
         return;
@@ -203,7 +193,8 @@ void WebSocket::onData(Frame taken, Received& received) {
 }
 
 void WebSocket::fail(std::uint16_t status, Received& received) {
-    received.answer += closeFrame(status);
+    const char code[]{static_cast<char>(status >> 8), static_cast<char>(status & 0xFFU)};
+    received.answer += frame(Opcode::close, {code, sizeof(code)});
     received.close = true;
     state_ = State::closed;
     incoming_.clear();

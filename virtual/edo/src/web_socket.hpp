@@ -9,6 +9,21 @@
 
 namespace metier::virtual_edo {
 
+/// Longest HTTP request that is read.
+inline constexpr std::size_t kLongestRequest = 16'384;
+
+/// Answer of a server to the HTTP request for a WebSocket.
+struct HandshakeAnswer {
+    std::string response;   ///< text to send
+    bool accepted = false;  ///< otherwise the connection is to be closed after the response
+};
+
+/// The server's side of the opening handshake: no subprotocol, no extension (permessage-deflate is
+/// declined by not naming it).
+/// \param request the request with its empty line, at most kLongestRequest bytes
+/// Source: RFC 6455 section 4.2.
+HandshakeAnswer answerHandshake(std::string_view request);
+
 /// Longest message that is taken, in one frame or in many.
 inline constexpr std::size_t kLongestMessage = 1'000'000;
 
@@ -47,9 +62,8 @@ private:
 
     void takeHandshake(Received& received);
     bool takeFrame(Received& received);
-    void onFrame(Frame frame, Received& received);
     void onControl(const Frame& frame, Received& received);
-    void onData(Frame frame, Received& received);
+    void onData(const Frame& frame, Received& received);
     void fail(std::uint16_t status, Received& received);
 
     State state_ = State::handshake;

@@ -1,7 +1,6 @@
 // What a bridge keeps of its clients, and messages of every type that there is.
 #include <gmock/gmock.h>
 
-#include "message_definitions.hpp"
 #include "rig.hpp"
 
 namespace metier::virtual_edo {

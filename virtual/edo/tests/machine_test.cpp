@@ -286,9 +286,9 @@ TEST(Machine, ChecksItsBrakes) {
 
 TEST(Machine, RefusesInjectionsItDoesNotKnow) {
     Rig rig;
-    EXPECT_EQ(rig.robot.inject({"fire", ""}).error().code, Errc::not_found);
-    EXPECT_EQ(rig.robot.inject({"limit", "7"}).error().code, Errc::invalid_argument);
-    EXPECT_EQ(rig.robot.inject({"joint-silent", "x"}).error().code, Errc::invalid_argument);
+    EXPECT_EQ(rig.inject("fire").error().code, Errc::not_found);
+    EXPECT_EQ(rig.inject("limit", "7").error().code, Errc::invalid_argument);
+    EXPECT_EQ(rig.inject("joint-silent", "x").error().code, Errc::invalid_argument);
     EXPECT_GT(rig.robot.injections().size(), 8U);
 }
 

@@ -149,8 +149,8 @@ public:
         });
         return found;
     }
-    bool inject(const std::string& name, const std::string& value = "") {
-        return robot.inject({.name = name, .value = value}).has_value();
+    Result<void> inject(const std::string& name, const std::string& value = "") {
+        return performOneOf(robot.injections(), {.name = name, .value = value});
     }
     void moveJoints(std::vector<double> joints, int delay = 0, int override_percent = 100) {
         client.publish("/bridge_move", {{"move_command", 77},

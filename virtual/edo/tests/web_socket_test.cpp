@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "base64.hpp"
-#include "handshake.hpp"
 
 namespace metier::virtual_edo {
 namespace {

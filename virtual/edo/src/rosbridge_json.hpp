@@ -9,6 +9,13 @@
 
 namespace metier::virtual_edo {
 
+/// The JSON of a text from outside; discarded (neither object nor anything else) if it is none or
+/// is nested deeper than any message.
+Json parseJson(std::string_view text);
+
+/// Plain ASCII, as rosbridge sends.
+std::string toText(const Json& message);
+
 /// The id of a rosbridge request as text; empty if it has none.
 std::string requestId(const Json& request);
 
