@@ -1,22 +1,37 @@
-#include "controller.hpp"
+#include "metier/virtual_controller/controller.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
-#include "metier/base/numbers.hpp"
+#include "gripper.hpp"
 #include "metier/base/text.hpp"
+#include "metier/virtual_controller/cycle_timer.hpp"
+#include "metier/virtual_controller/tcp_server.hpp"
+#include "session.hpp"
 
 namespace metier::virtual_wsg50 {
-
 namespace {
 
+using namespace virtual_controller;
 using namespace std::chrono_literals;
-using virtual_controller::InjectionHelp;
-using virtual_controller::TcpPeer;
+
+/// Options from the settings (README.md).
+struct Options {
+    std::uint16_t port = 1000;
+    Capability capability;
+    Identity identity;
+    double part_width = 0.0;  ///< [m]; 0: only what the world has
+    bool fast_stop_on_disconnect = true;
+};
 
 constexpr std::chrono::milliseconds kCycle{2};
 constexpr double kCycleSeconds = 0.002;
@@ -50,19 +65,40 @@ Result<double> parseWidth(const std::string& text, double stroke) {
     return width_mm * kMillimetre;
 }
 
-}  // namespace
+/// A WSG 50 on its TCP port, for one client.
+class WsgController final : public Controller {
+public:
+    WsgController(const ControllerRequest& request, Options options);
+    /// Errors: those of TcpServer::listen().
+    Result<void> listen(const ControllerRequest& request);
 
-Result<std::unique_ptr<WsgController>> WsgController::start(
-    const virtual_controller::ControllerRequest& request) {
-    auto options = readOptions(request.settings);
-    METIER_TRY(request.settings.finish());
-    auto controller =
-        std::unique_ptr<WsgController>(new WsgController(request, std::move(options)));
-    METIER_TRY(controller->listen(request));
-    return controller;
-}
+    std::vector<InjectionHelp> injections() const override { return injections_; }
+    nlohmann::ordered_json state() const override;
+    void restart() override;
 
-WsgController::WsgController(const virtual_controller::ControllerRequest& request, Options options)
+private:
+    std::vector<InjectionHelp> makeInjections();
+    void switchOn();
+    void connected(TcpPeer& peer);
+    void closed(const TcpPeer& peer);
+    std::optional<double> partWidth();
+    void cycle();
+
+    const Options options_;
+    const std::vector<InjectionHelp> injections_ = makeInjections();
+    WorldLink& world_;
+    Identity identity_;
+    double part_width_ = 0.0;   // [m]; 0: none of its own
+    double block_width_ = 0.0;  // [m]; 0: nothing is in the way
+    bool part_slipped_ = false;
+    std::optional<Gripper> gripper_;
+    TcpPeer* client_ = nullptr;
+    std::optional<Session> session_;
+    std::unique_ptr<TcpServer> server_;
+    CycleTimer timer_;
+};
+
+WsgController::WsgController(const ControllerRequest& request, Options options)
     : options_(std::move(options)),
       world_(request.world),
       identity_(options_.identity),
@@ -81,22 +117,17 @@ void WsgController::switchOn() {
     });
 }
 
-Result<void> WsgController::listen(const virtual_controller::ControllerRequest& request) {
-    auto server = virtual_controller::TcpServer::listen(
-        request.context, request.address, options_.port, request.faults,
-        {.on_connected = [this](TcpPeer& peer) { connected(peer); },
-         .on_data =
-             [this](TcpPeer& peer, std::span<const std::byte> bytes) {
-                 if (&peer == client_) {
-                     session_->receive(bytes);
-                 }
-             },
-         .on_closed = [this](TcpPeer& peer) { closed(peer); }});
-    if (!server) {
-        return fail(server.error());
-    }
-    server_ = std::move(*server);
-    return {};
+Result<void> WsgController::listen(const ControllerRequest& request) {
+    return TcpServer::listen(request.context, request.address, options_.port, request.faults,
+                             {.on_connected = [this](TcpPeer& peer) { connected(peer); },
+                              .on_data =
+                                  [this](TcpPeer& peer, std::span<const std::byte> bytes) {
+                                      if (&peer == client_) {
+                                          session_->receive(bytes);
+                                      }
+                                  },
+                              .on_closed = [this](TcpPeer& peer) { closed(peer); }})
+        .map([this](auto server) { server_ = std::move(server); });
 }
 
 // ---- the one client ----------------------------------------------------------------------------
@@ -146,41 +177,39 @@ void WsgController::cycle() {
     if (session_) {
         session_->step(kCycle);
     }
-    virtual_controller::WorldReport report;
+    WorldReport report;
     report.jaw_width = gripper_->width();
     report.gripping = gripper_->force() > 0.0;
     world_.report(report);
 }
 
-std::vector<InjectionHelp> WsgController::injections() const {
+std::vector<InjectionHelp> WsgController::makeInjections() {
     return {
-        {"part", "a part between the jaws: its width, 0 to 110 mm; 0: what the world has"},
-        {"lost-part", "the part slips out of the jaws until another one is there"},
-        {"block", "jaws cannot pass this width, 0 to 110 mm; 0: nothing is in the way"},
-        {"fast-stop", "fast stop, as if the command had come: needs an acknowledgement"},
-        {"temperature-fault", "too hot; `off`: cool again, then it can be acknowledged"},
+        {"part", "a part between the jaws: its width, 0 to 110 mm; 0: what the world has",
+         [this](const std::string& value) {
+             return parseWidth(value, options_.capability.stroke).map([this](double width) {
+                 part_width_ = width;
+                 part_slipped_ = false;
+             });
+         }},
+        {"lost-part", "the part slips out of the jaws until another one is there", always([this] {
+             part_width_ = 0.0;
+             part_slipped_ = true;
+         })},
+        {"block", "jaws cannot pass this width, 0 to 110 mm; 0: nothing is in the way",
+         [this](const std::string& value) {
+             return parseWidth(value, options_.capability.stroke).map([this](double width) {
+                 block_width_ = width;
+             });
+         }},
+        {"fast-stop", "fast stop, as if the command had come: needs an acknowledgement",
+         always([this] { gripper_->fastStop(); })},
+        {"temperature-fault", "too hot; `off`: cool again, then it can be acknowledged",
+         [this](const std::string& value) -> Result<void> {
+             gripper_->setTemperatureFault(value != "off");
+             return {};
+         }},
     };
-}
-
-Result<void> WsgController::inject(const virtual_controller::Injection& injection) {
-    if (injection.name == "part" || injection.name == "block") {
-        METIER_ASSIGN(const auto width, parseWidth(injection.value, options_.capability.stroke));
-        (injection.name == "part" ? part_width_ : block_width_) = width;
-        part_slipped_ = injection.name == "part" ? false : part_slipped_;
-        return {};
-    }
-    if (injection.name == "lost-part") {
-        part_width_ = 0.0;
-        part_slipped_ = true;
-    } else if (injection.name == "fast-stop") {
-        gripper_->fastStop();
-    } else if (injection.name == "temperature-fault") {
-        gripper_->setTemperatureFault(injection.value != "off");
-    } else {
-        return fail(Errc::not_found,
-                    fmt::format("a WSG 50 knows no injection \"{}\"", injection.name));
-    }
-    return {};
 }
 
 nlohmann::ordered_json WsgController::state() const {
@@ -198,16 +227,22 @@ nlohmann::ordered_json WsgController::state() const {
     };
 }
 
+Result<std::unique_ptr<Controller>> start(const ControllerRequest& request) {
+    auto options = readOptions(request.settings);
+    METIER_TRY(request.settings.finish());
+    auto controller = std::make_unique<WsgController>(request, std::move(options));
+    METIER_TRY(controller->listen(request));
+    return controller;
+}
+
+}  // namespace
 }  // namespace metier::virtual_wsg50
 
 namespace metier::virtual_controller {
 
 ControllerType wsg50Controller();
 ControllerType wsg50Controller() {
-    return {"wsg50", "Weiss WSG 50 gripper: binary commands over TCP",
-            [](const ControllerRequest& request) -> Result<std::unique_ptr<Controller>> {
-                return virtual_wsg50::WsgController::start(request);
-            }};
+    return {"wsg50", "Weiss WSG 50 gripper: binary commands over TCP", virtual_wsg50::start};
 }
 
 }  // namespace metier::virtual_controller

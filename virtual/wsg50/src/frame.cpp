@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 
+#include "payload.hpp"
+
 namespace metier::virtual_wsg50 {
 
 namespace {
 
-constexpr std::byte kPreamble{0xAA};
-constexpr std::size_t kPreambleSize = 3;
+constexpr std::array kPreamble{std::byte{0xAA}, std::byte{0xAA}, std::byte{0xAA}};
 constexpr std::size_t kHeaderSize = 6;
 constexpr std::size_t kChecksumSize = 2;
 
@@ -26,16 +27,6 @@ constexpr std::array<std::uint16_t, 256> makeTable() {
 
 constexpr auto kTable = makeTable();
 
-std::size_t u16At(const std::vector<std::byte>& bytes, std::size_t at) {
-    return std::to_integer<std::size_t>(bytes[at]) | std::to_integer<std::size_t>(bytes[at + 1])
-                                                         << 8U;
-}
-
-void appendU16(std::vector<std::byte>& bytes, std::size_t value) {
-    bytes.push_back(static_cast<std::byte>(value & 0xFFU));
-    bytes.push_back(static_cast<std::byte>(value >> 8U & 0xFFU));
-}
-
 }  // namespace
 
 std::uint16_t checksum(std::span<const std::byte> bytes) noexcept {
@@ -47,14 +38,9 @@ std::uint16_t checksum(std::span<const std::byte> bytes) noexcept {
 }
 
 std::vector<std::byte> encode(std::uint8_t id, std::span<const std::byte> payload) {
-    std::vector<std::byte> bytes;
-    bytes.reserve(kHeaderSize + payload.size() + kChecksumSize);
-    bytes.assign(kPreambleSize, kPreamble);
-    bytes.push_back(static_cast<std::byte>(id));
-    appendU16(bytes, payload.size());
-    bytes.insert(bytes.end(), payload.begin(), payload.end());
-    appendU16(bytes, checksum(bytes));
-    return bytes;
+    PayloadWriter frame;
+    frame.raw(kPreamble).u8(id).u16(static_cast<std::uint16_t>(payload.size())).raw(payload);
+    return frame.u16(checksum(frame.bytes())).bytes();
 }
 
 void FrameReader::feed(std::span<const std::byte> bytes) {
@@ -66,14 +52,15 @@ std::optional<Frame> FrameReader::next() {
     if (buffer_.size() < kHeaderSize) {
         return std::nullopt;
     }
-    const std::size_t length = u16At(buffer_, kPreambleSize + 1);
+    PayloadReader header{std::span(buffer_).subspan(kPreamble.size())};
+    Frame frame;
+    frame.id = header.u8();
+    const std::size_t length = header.u16();
     const std::size_t size = kHeaderSize + length + kChecksumSize;
     if (buffer_.size() < size) {
         return std::nullopt;
     }
     const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(size);
-    Frame frame;
-    frame.id = std::to_integer<std::uint8_t>(buffer_[kPreambleSize]);
     frame.payload.assign(buffer_.begin() + kHeaderSize, end - kChecksumSize);
     frame.intact = checksum(std::span(buffer_).first(size)) == 0;
     buffer_.erase(buffer_.begin(), end);
@@ -81,12 +68,11 @@ std::optional<Frame> FrameReader::next() {
 }
 
 void FrameReader::skipToPreamble() {
-    const std::array<std::byte, kPreambleSize> preamble{kPreamble, kPreamble, kPreamble};
-    auto found = std::search(buffer_.begin(), buffer_.end(), preamble.begin(), preamble.end());
+    auto found = std::search(buffer_.begin(), buffer_.end(), kPreamble.begin(), kPreamble.end());
     if (found == buffer_.end()) {
         // The last bytes may be the beginning of a preamble.
         for (std::size_t kept = 1;
-             kept < kPreambleSize && found != buffer_.begin() && *(found - 1) == kPreamble;
+             kept < kPreamble.size() && found != buffer_.begin() && *(found - 1) == kPreamble[0];
              ++kept) {
             --found;
         }

@@ -1,5 +1,3 @@
-#include "controller.hpp"
-
 #include <gmock/gmock.h>
 
 #include <array>
@@ -10,6 +8,7 @@
 #include "metier/link/tcp_link.hpp"
 #include "metier/virtual_controller/testing/running_controller.hpp"
 #include "payload.hpp"
+#include "session.hpp"
 
 namespace metier::virtual_controller {
 ControllerType wsg50Controller();
