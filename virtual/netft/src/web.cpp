@@ -113,14 +113,13 @@ std::array<std::string, 6> ratings(const Calibration& calibration) {
     return result;
 }
 
-void addRunData(Elements& page, const WebPages& pages) {
+std::string configurationPage(const WebPages& pages) {
+    const auto& calibration = pages.calibration;
+    Elements page;
     page.add("prodname", escaped(pages.product));
     page.add("runstat", fmt::format("0x{:08x}", pages.reading.status));
     page.addAll("runft", pages.reading.counts);
     page.add("runrate", kSampleRate);
-}
-
-void addConfiguration(Elements& page, const Calibration& calibration) {
     page.add("cfgnam", "empty");
     page.add("cfgcalsel", 0);
     page.add("cfgcalsn", kSerialNumber);
@@ -134,9 +133,6 @@ void addConfiguration(Elements& page, const Calibration& calibration) {
     page.addCounts("cfgcpf", calibration.counts_per_force);
     page.addCounts("cfgcpt", calibration.counts_per_torque);
     page.addAll("cfgmr", ratings(calibration));
-}
-
-void addSettings(Elements& page, const WebPages& pages) {
     page.add("setcfgsel", 0);
     page.addAll("setbias", pages.gauge_bias);
     page.add("setuserfilter", pages.filter);
@@ -144,13 +140,6 @@ void addSettings(Elements& page, const WebPages& pages) {
     page.add("comrdte", pages.rdt_enabled ? "Enabled" : "Disabled");
     page.add("comrdtrate", pages.rate);
     page.add("comrdtbsiz", pages.buffer_size);
-}
-
-std::string configurationPage(const WebPages& pages) {
-    Elements page;
-    addRunData(page, pages);
-    addConfiguration(page, pages.calibration);
-    addSettings(page, pages);
     return page.within("netft");
 }
 
@@ -169,10 +158,6 @@ std::string calibrationPage(const Calibration& calibration) {
 }
 
 // ---- what sets ---------------------------------------------------------------------------------
-
-bool sets(std::string_view page) {
-    return std::ranges::find(kVariables, page, &Variable::page) != kVariables.end();
-}
 
 /// \param text "name=value"
 Result<Change> parseChange(std::string_view page, std::string_view text) {
@@ -233,7 +218,7 @@ WebAnswer answerWeb(std::string_view request, const WebPages& pages) {
     if (path == "/netftcalapi.xml") {
         return {answer("200 OK", "text/xml", calibrationPage(pages.calibration))};
     }
-    if (sets(path)) {
+    if (std::ranges::find(kVariables, path, &Variable::page) != kVariables.end()) {
         return change(path, target.substr(std::min(path.size() + 1, target.size())));
     }
     return refusal("404 Not Found", "no such page");
