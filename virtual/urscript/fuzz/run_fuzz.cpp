@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "../tests/fake_robot.hpp"
+#include "metier/base/text.hpp"
 
 namespace {
 
@@ -41,6 +42,10 @@ private:
         return words[choice(n)];
     }
 
+    std::string nameIn(std::string_view names) {
+        const auto all = metier::split(names, ' ');
+        return std::string(all[choice(all.size())]);
+    }
     std::string variable() {
         return std::string(oneOf(std::to_array<std::string_view>({"a", "b", "c", "d"})));
     }
@@ -75,37 +80,19 @@ private:
     }
 
     std::string call(int depth) {
-        constexpr auto kOne = std::to_array<std::string_view>({"norm",
-                                                               "floor",
-                                                               "to_str",
-                                                               "to_num",
-                                                               "str_len",
-                                                               "length",
-                                                               "size",
-                                                               "normalize",
-                                                               "sqrt",
-                                                               "inv",
-                                                               "integer_to_binary_list",
-                                                               "binary_list_to_integer",
-                                                               "read_input_float_register",
-                                                               "get_inverse_kin",
-                                                               "get_forward_kin",
-                                                               "rotvec2rpy",
-                                                               "rpy2rotvec",
-                                                               "get_digital_in",
-                                                               "socket_read_line",
-                                                               "socket_read_string",
-                                                               "tool_contact",
-                                                               "is_within_safety_limits",
-                                                               "get_joint_temp"});
-        constexpr auto kTwo = std::to_array<std::string_view>(
-            {"pow", "log", "atan2", "str_cat", "str_at", "str_find", "str_sub", "make_list",
-             "pose_trans", "pose_add", "pose_sub", "point_dist", "socket_open",
-             "socket_read_binary_integer", "socket_read_ascii_float", "socket_read_byte_list",
-             "socket_send_int", "socket_get_var"});
-        return choice(2) == 0 ? std::string(oneOf(kOne)) + "(" + value(depth + 1) + ")"
-                              : std::string(oneOf(kTwo)) + "(" + value(depth + 1) + ", " +
-                                    value(depth + 1) + ")";
+        constexpr std::string_view kOne =
+            "norm floor to_str to_num str_len length size normalize sqrt inv "
+            "integer_to_binary_list binary_list_to_integer read_input_float_register "
+            "get_inverse_kin get_forward_kin rotvec2rpy rpy2rotvec get_digital_in "
+            "socket_read_line socket_read_string tool_contact is_within_safety_limits "
+            "get_joint_temp";
+        constexpr std::string_view kTwo =
+            "pow log atan2 str_cat str_at str_find str_sub make_list pose_trans pose_add "
+            "pose_sub point_dist socket_open socket_read_binary_integer "
+            "socket_read_ascii_float socket_read_byte_list socket_send_int socket_get_var";
+        return choice(2) == 0
+                   ? nameIn(kOne) + "(" + value(depth + 1) + ")"
+                   : nameIn(kTwo) + "(" + value(depth + 1) + ", " + value(depth + 1) + ")";
     }
 
     std::string block(int depth) {

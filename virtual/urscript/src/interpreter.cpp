@@ -22,6 +22,8 @@ bool isReady(const std::unique_ptr<Thread>& thread) {
 }  // namespace
 
 class Interpreter::Run final : public ThreadContext {
+    friend class Interpreter;
+
 public:
     Run(Program program, Robot& robot, RunLimits limits)
         : program_(std::move(program)),
@@ -47,11 +49,6 @@ public:
     void killThread(std::int32_t handle) override;
     bool isAlive(std::int32_t handle) const override { return find(handle) != nullptr; }
 
-    const Program& program() const { return program_; }
-    RunState state() const { return state_; }
-    const std::optional<RuntimeException>& exception() const { return exception_; }
-    int line() const { return line_; }
-    std::size_t threadCount() const { return threads_.size(); }
     std::optional<Value> variable(std::string_view name) const;
 
 private:
@@ -216,28 +213,28 @@ Interpreter& Interpreter::operator=(Interpreter&& other) noexcept {
 }
 
 RunState Interpreter::step() {
-    return run_->state() == RunState::running ? run_->step() : state();
+    return run_->state_ == RunState::running ? run_->step() : state();
 }
 void Interpreter::stop() {
     run_->end(RunState::finished);
 }
 RunState Interpreter::state() const {
-    return run_->state();
+    return run_->state_;
 }
 const std::optional<RuntimeException>& Interpreter::exception() const {
-    return run_->exception();
+    return run_->exception_;
 }
 int Interpreter::line() const {
-    return run_->line();
+    return run_->line_;
 }
 std::size_t Interpreter::threadCount() const {
-    return run_->threadCount();
+    return run_->threads_.size();
 }
 std::optional<Value> Interpreter::variable(std::string_view name) const {
     return run_->variable(name);
 }
 const Program& Interpreter::program() const {
-    return run_->program();
+    return run_->program_;
 }
 
 }  // namespace metier::urscript
