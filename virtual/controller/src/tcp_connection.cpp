@@ -102,12 +102,12 @@ void TcpConnection::send(std::span<const std::byte> bytes) {
     write();
 }
 
-void TcpConnection::wait(SteadyTime until, void (TcpConnection::*then)()) {
+void TcpConnection::writeAt(SteadyTime until) {
     write_timer_.expires_at(until);
-    write_timer_.async_wait([self = shared_from_this(), then](const asio::error_code& error) {
+    write_timer_.async_wait([self = shared_from_this()](const asio::error_code& error) {
         self->writing_ = false;
         if (!error) {
-            (self.get()->*then)();
+            self->write();
         }
     });
 }
@@ -125,9 +125,9 @@ void TcpConnection::write() {
     writing_ = true;
     const auto now = std::chrono::steady_clock::now();
     if (owner_->faults.cut.load()) {
-        wait(now + kCutPause, &TcpConnection::write);
+        writeAt(now + kCutPause);
     } else if (outgoing_.front().due > now) {
-        wait(outgoing_.front().due, &TcpConnection::write);
+        writeAt(outgoing_.front().due);
     } else {
         writeFront();
     }

@@ -68,7 +68,7 @@ private:
     void onRead(const asio::error_code& error, std::size_t count);
     void write();
     void writeFront();
-    void wait(SteadyTime until, void (TcpConnection::*then)());
+    void writeAt(SteadyTime until);
     void closeSocket();
     void lose();
 

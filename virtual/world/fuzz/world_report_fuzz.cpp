@@ -14,7 +14,7 @@ namespace {
 using namespace metier;
 using namespace metier::virtual_world;
 
-WorldOptions cell() {
+WorldOptions smallCell() {
     WorldOptions options;
     options.parts["cube"] = {
         .size = {0.04, 0.04, 0.04}, .world_from_part = {{0.4, 0.0, 0.02}, {}}, .mass = 0.1};
@@ -35,7 +35,7 @@ void check(bool holds) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     std::string_view text(reinterpret_cast<const char*>(data), size);
-    World world(cell());
+    World world(smallCell());
     while (!text.empty()) {
         const auto line = text.substr(0, text.find('\n'));
         text.remove_prefix(std::min(text.size(), line.size() + 1));

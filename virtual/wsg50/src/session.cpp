@@ -121,34 +121,25 @@ void Session::answer(Command command, std::span<const std::byte> payload) {
 
 void Session::answerMotion(Command command, std::span<const std::byte> payload) {
     PayloadReader in(payload);
-    auto status = Status::success;
-    switch (command) {
-        case Command::home: {
-            const auto direction = in.u8();
-            status = direction <= 2 ? gripper_.home(static_cast<HomingDirection>(direction))
-                                    : Status::invalid_parameter;
-            break;
-        }
-        case Command::pre_position: {
-            const auto flags = in.u8();
-            const double width = in.f32() * kMillimetre;
-            const double speed = in.f32() * kMillimetre;
-            status =
-                gripper_.prePosition((flags & 1U) != 0 ? gripper_.width() + width : width, speed,
-                                     (flags & 2U) != 0 ? WhenBlocked::stop : WhenBlocked::clamp);
-            break;
-        }
-        case Command::grasp: {
-            const double width = in.f32() * kMillimetre;
-            status = gripper_.grasp(width, in.f32() * kMillimetre);
-            break;
-        }
-        default: {
-            const double width = in.f32() * kMillimetre;
-            status = gripper_.release(width, in.f32() * kMillimetre);
-        }
+    if (command == Command::home) {
+        const auto direction = in.u8();
+        return reply(command,
+                     direction <= 2 ? gripper_.home(static_cast<HomingDirection>(direction))
+                                    : Status::invalid_parameter,
+                     {});
     }
-    reply(command, status, {});
+    const unsigned flags = command == Command::pre_position ? in.u8() : 0U;
+    const double width = in.f32() * kMillimetre;
+    const double speed = in.f32() * kMillimetre;
+    if (command == Command::grasp) {
+        reply(command, gripper_.grasp(width, speed), {});
+    } else if (command == Command::release) {
+        reply(command, gripper_.release(width, speed), {});
+    } else {
+        const auto when_blocked = (flags & 2U) != 0 ? WhenBlocked::stop : WhenBlocked::clamp;
+        const double target = (flags & 1U) != 0 ? gripper_.width() + width : width;
+        reply(command, gripper_.prePosition(target, speed, when_blocked), {});
+    }
 }
 
 void Session::answerStop(Command command, std::span<const std::byte> payload) {
