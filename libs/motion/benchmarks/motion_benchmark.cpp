@@ -51,109 +51,105 @@ struct Fixture {
 
     RobotModel model;
     std::vector<JointVector> positions;
-    std::vector<motion::Pose> poses;
+    std::vector<Pose> poses;
 };
+
+/// Runs `work` with the number of one position after the other.
+template <typename Work>
+void forEachPosition(benchmark::State& state, const Work& work) {
+    std::size_t n = 0;
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(work(n++ % kPositions));
+    }
+}
+
+/// Runs `solve` for the pose at one position after the other, from another position; notes the
+/// share of poses for which it succeeds.
+template <typename Solve>
+void solveEachPose(benchmark::State& state, const Fixture& fixture, const Solve& solve) {
+    std::size_t n = 0;
+    std::size_t solved = 0;
+    for (auto _ : state) {
+        const std::size_t k = n++ % kPositions;
+        solved += solve(fixture.poses[k], fixture.positions[(k + 7) % kPositions]) ? 1 : 0;
+    }
+    state.counters["solved"] = static_cast<double>(solved) / static_cast<double>(n);
+}
+
+void copyTo(KDL::JntArray& array, const JointVector& joints) {
+    for (unsigned i = 0; i < joints.size(); ++i) {
+        array(i) = joints[i];
+    }
+}
+
+KDL::Frame toKdl(const Pose& pose) {
+    const auto& r = pose.rotation;
+    const auto& t = pose.translation;
+    return {KDL::Rotation::Quaternion(r.x(), r.y(), r.z(), r.w()), {t.x(), t.y(), t.z()}};
+}
+
+KDL::ChainIkSolverPos_LMA solverOf(const KdlOracle& oracle) {
+    return {oracle.chain(), Eigen::Matrix<double, 6, 1>::Ones(), 1e-6, 500, 1e-15};
+}
 
 void forwardOwn(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
-    std::size_t n = 0;
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(
-            fixture.model.kinematics().forward(fixture.positions[n++ % kPositions]));
-    }
+    forEachPosition(state, [&](std::size_t n) {
+        return fixture.model.kinematics().forward(fixture.positions[n]);
+    });
 }
 
 void forwardKdl(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
     KdlOracle oracle(fixture.model.chain());
-    std::size_t n = 0;
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(oracle.forward(fixture.positions[n++ % kPositions]));
-    }
+    forEachPosition(state, [&](std::size_t n) { return oracle.forward(fixture.positions[n]); });
 }
 
 void jacobianOwn(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
-    std::size_t n = 0;
     Jacobian jacobian;
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(
-            fixture.model.kinematics().forward(fixture.positions[n++ % kPositions], jacobian));
-    }
+    forEachPosition(state, [&](std::size_t n) {
+        return fixture.model.kinematics().forward(fixture.positions[n], jacobian);
+    });
 }
 
 void jacobianKdl(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
     KdlOracle oracle(fixture.model.chain());
-    std::size_t n = 0;
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(oracle.jacobian(fixture.positions[n++ % kPositions]));
-    }
+    forEachPosition(state, [&](std::size_t n) { return oracle.jacobian(fixture.positions[n]); });
 }
 
 void inverseAll(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
-    std::size_t n = 0;
-    for (auto _ : state) {
-        const std::size_t k = n++ % kPositions;
-        benchmark::DoNotOptimize(
-            fixture.model.kinematics().allSolutions(fixture.poses[k], fixture.positions[k]));
-    }
+    forEachPosition(state, [&](std::size_t n) {
+        return fixture.model.kinematics().allSolutions(fixture.poses[n], fixture.positions[n]);
+    });
 }
 
 void inverseNearest(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
-    std::size_t n = 0;
-    std::size_t solved = 0;
-    IkRequest request;
-    for (auto _ : state) {
-        const std::size_t k = n++;
-        request.reference = fixture.positions[(k + 7) % kPositions];
-        solved +=
-            fixture.model.kinematics().inverse(fixture.poses[k % kPositions], request) ? 1 : 0;
-    }
-    state.counters["solved"] = static_cast<double>(solved) / static_cast<double>(n);
+    solveEachPose(state, fixture, [&](const Pose& pose, const JointVector& from) {
+        return fixture.model.kinematics().inverse(pose, {from, {}, {}}).has_value();
+    });
 }
 
 void inverseNumeric(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
-    std::size_t n = 0;
-    std::size_t solved = 0;
-    IkRequest request;
-    for (auto _ : state) {
-        const std::size_t k = n++;
-        request.reference = fixture.positions[(k + 7) % kPositions];
-        solved +=
-            fixture.model.kinematics().inverseNumerically(fixture.poses[k % kPositions], request)
-                ? 1
-                : 0;
-    }
-    state.counters["solved"] = static_cast<double>(solved) / static_cast<double>(n);
+    solveEachPose(state, fixture, [&](const Pose& pose, const JointVector& from) {
+        return fixture.model.kinematics().inverseNumerically(pose, {from, {}, {}}).has_value();
+    });
 }
 
 void inverseKdl(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
     const KdlOracle oracle(fixture.model.chain());
-    KDL::ChainIkSolverPos_LMA solver(oracle.chain(), Eigen::Matrix<double, 6, 1>::Ones(), 1e-6, 500,
-                                     1e-15);
-    const auto axes = static_cast<unsigned>(fixture.model.axisCount());
-    KDL::JntArray seed(axes);
-    KDL::JntArray found(axes);
-    std::size_t n = 0;
-    std::size_t solved = 0;
-    for (auto _ : state) {
-        const std::size_t k = n++;
-        for (unsigned i = 0; i < axes; ++i) {
-            seed(i) = fixture.positions[(k + 7) % kPositions][i];
-        }
-        const motion::Pose& pose = fixture.poses[k % kPositions];
-        const auto& r = pose.rotation;
-        const auto& t = pose.translation;
-        const KDL::Frame target(KDL::Rotation::Quaternion(r.x(), r.y(), r.z(), r.w()),
-                                {t.x(), t.y(), t.z()});
-        solved += solver.CartToJnt(seed, target, found) == 0 ? 1 : 0;
-    }
-    state.counters["solved"] = static_cast<double>(solved) / static_cast<double>(n);
+    auto solver = solverOf(oracle);
+    KDL::JntArray seed(static_cast<unsigned>(fixture.model.axisCount()));
+    KDL::JntArray found(seed);
+    solveEachPose(state, fixture, [&](const Pose& pose, const JointVector& from) {
+        copyTo(seed, from);
+        return solver.CartToJnt(seed, toKdl(pose), found) == 0;
+    });
 }
 
 LinRequest line(const RobotModel& model, double length) {
@@ -170,7 +166,7 @@ RobotModel calibrated(const RobotModel& nominal) {
     ChainDescription chain = nominal.chain();
     double sign = 1;
     for (JointDescription& joint : chain.joints) {
-        motion::Pose& pose = joint.parent_from_joint;
+        Pose& pose = joint.parent_from_joint;
         pose.translation += sign * Eigen::Vector3d(1e-3, 0, 1e-3);
         pose.rotation = pose.rotation * Eigen::AngleAxisd(sign * 1e-3, Eigen::Vector3d::UnitX());
         sign = -sign;
@@ -195,8 +191,8 @@ void inverseCalibrated(benchmark::State& state, const std::string& robot) {
 LinRequest longLine(const RobotModel& model) {
     LinRequest request = line(model, 0);
     const double half = model.kinematics().reach() > 1 ? 0.5 : 0.3;
-    const motion::Pose home = model.kinematics().forward(model.home());
-    motion::Pose start = home;
+    const Pose home = model.kinematics().forward(model.home());
+    Pose start = home;
     start.translation.y() -= half;
     request.start = model.kinematics().inverse(start, {model.home(), {}, {}}).value();
     request.target.translation = {0, 2 * half, 0};
@@ -229,13 +225,8 @@ void planLine(benchmark::State& state, const std::string& robot) {
 void sampleLineKdl(benchmark::State& state, const std::string& robot) {
     const RobotModel model = load(robot);
     const KdlOracle oracle(model.chain());
-    KDL::ChainIkSolverPos_LMA solver(oracle.chain(), Eigen::Matrix<double, 6, 1>::Ones(), 1e-6, 500,
-                                     1e-15);
-    const motion::Pose home = model.kinematics().forward(model.home());
-    const auto& r = home.rotation;
-    const auto& t = home.translation;
-    const KDL::Frame from(KDL::Rotation::Quaternion(r.x(), r.y(), r.z(), r.w()),
-                          {t.x(), t.y(), t.z()});
+    auto solver = solverOf(oracle);
+    const KDL::Frame from = toKdl(model.kinematics().forward(model.home()));
     const KDL::Frame to(from.M, from.p + KDL::Vector(0, 0, 0.1));
     auto profile = std::make_unique<KDL::VelocityProfile_Trap>(0.25, 1.2);
     auto path = std::make_unique<KDL::Path_Line>(
@@ -243,17 +234,14 @@ void sampleLineKdl(benchmark::State& state, const std::string& robot) {
     profile->SetProfile(0, path->PathLength());
     const double duration = profile->Duration();
     const KDL::Trajectory_Segment trajectory(path.release(), profile.release());
-    const auto axes = static_cast<unsigned>(model.axisCount());
-    KDL::JntArray q(axes);
-    KDL::JntArray next(axes);
+    KDL::JntArray q(static_cast<unsigned>(model.axisCount()));
+    KDL::JntArray next(q);
     double time = duration;
     for (auto _ : state) {
         time += 0.001;
         if (time > duration) {
             time = 0;
-            for (unsigned i = 0; i < axes; ++i) {
-                q(i) = model.home()[i];
-            }
+            copyTo(q, model.home());
         }
         benchmark::DoNotOptimize(solver.CartToJnt(q, trajectory.Pos(time), next));
         q = next;
@@ -262,23 +250,18 @@ void sampleLineKdl(benchmark::State& state, const std::string& robot) {
 
 void planPtp(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
-    std::size_t n = 0;
     PtpRequest request;
-    for (auto _ : state) {
-        request.start = fixture.positions[n % kPositions];
+    forEachPosition(state, [&](std::size_t n) {
+        request.start = fixture.positions[n];
         request.target = fixture.positions[(n + 7) % kPositions];
-        ++n;
-        benchmark::DoNotOptimize(Planner(fixture.model).ptp(request));
-    }
+        return Planner(fixture.model).ptp(request);
+    });
 }
 
 void selfCollision(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
     const SelfCollision collision(fixture.model);
-    std::size_t n = 0;
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(collision.nearest(fixture.positions[n++ % kPositions]));
-    }
+    forEachPosition(state, [&](std::size_t n) { return collision.nearest(fixture.positions[n]); });
     state.counters["pairs"] = static_cast<double>(collision.pairCount());
 }
 
@@ -287,17 +270,12 @@ void linkFramesKdl(benchmark::State& state, const std::string& robot) {
     const Fixture fixture(robot);
     const KdlOracle oracle(fixture.model.chain());
     KDL::ChainFkSolverPos_recursive solver(oracle.chain());
-    const auto axes = static_cast<unsigned>(fixture.model.axisCount());
     std::vector<KDL::Frame> frames(oracle.chain().getNrOfSegments());
-    KDL::JntArray q(axes);
-    std::size_t n = 0;
-    for (auto _ : state) {
-        for (unsigned i = 0; i < axes; ++i) {
-            q(i) = fixture.positions[n % kPositions][i];
-        }
-        ++n;
-        benchmark::DoNotOptimize(solver.JntToCart(q, frames));
-    }
+    KDL::JntArray q(static_cast<unsigned>(fixture.model.axisCount()));
+    forEachPosition(state, [&](std::size_t n) {
+        copyTo(q, fixture.positions[n]);
+        return solver.JntToCart(q, frames);
+    });
 }
 
 void checkForce(benchmark::State& state, const std::string& robot) {
@@ -311,7 +289,7 @@ void checkForce(benchmark::State& state, const std::string& robot) {
 
 void sampleLine(benchmark::State& state, const std::string& robot) {
     const RobotModel model = load(robot);
-    const Trajectory trajectory = planLin(model, line(model, 0.1)).value();
+    const Trajectory trajectory = Planner(model).lin(line(model, 0.1)).value();
     MotionRun execution(trajectory);
     std::vector<double> costs;
     for (auto _ : state) {

@@ -17,7 +17,7 @@ constexpr std::array kComponentNames{"force along x",  "force along y",  "force 
 using Components = std::array<double, 6>;
 using Quantity = ForceExcess::Quantity;
 
-Components componentsOf(const motion::Wrench& wrench) noexcept {
+Components componentsOf(const Wrench& wrench) noexcept {
     const auto& [f, t] = wrench;
     return {f.x(), f.y(), f.z(), t.x(), t.y(), t.z()};
 }
@@ -39,8 +39,7 @@ std::optional<ForceExcess> findNotFinite(const Components& measured) noexcept {
     return std::nullopt;
 }
 
-std::optional<ForceExcess> findExcess(const motion::Wrench& wrench,
-                                      const WrenchLimits& limits) noexcept {
+std::optional<ForceExcess> findExcess(const Wrench& wrench, const WrenchLimits& limits) noexcept {
     if (const double force = wrench.force.norm(); beyond(force, limits.force)) {
         return ForceExcess{Quantity::force, 0, force, limits.force};
     }
@@ -91,7 +90,7 @@ Result<ForceLimit> ForceLimit::create(const WrenchLimits& limits, Seconds cycle)
     return ForceLimit(limits, 1 - std::exp(-2 * std::numbers::pi * kCutOff * cycle.count()));
 }
 
-std::optional<ForceExcess> ForceLimit::check(const motion::Wrench& measured) noexcept {
+std::optional<ForceExcess> ForceLimit::check(const Wrench& measured) noexcept {
     if (const auto broken = findNotFinite(componentsOf(measured))) {
         return broken;
     }

@@ -5,11 +5,6 @@
 
 namespace metier::motion {
 
-namespace {
-/// Below this cosine of b, a and c cannot be separated: the matrix entries are rounding noise.
-constexpr double kGimbalLock = 1e-9;
-}  // namespace
-
 Pose toPose(const Frame& frame) {
     using Eigen::AngleAxisd;
     using Eigen::Vector3d;
@@ -20,11 +15,13 @@ Pose toPose(const Frame& frame) {
 }
 
 Frame toFrame(const Pose& pose) {
+    // Below this cosine of b, a and c cannot be separated: the matrix entries are rounding noise.
+    constexpr double gimbal_lock = 1e-9;
     const Eigen::Matrix3d r = pose.rotation.normalized().toRotationMatrix();
     Frame frame{pose.translation.x(), pose.translation.y(), pose.translation.z()};
     const double cos_b = std::hypot(r(0, 0), r(1, 0));
     frame.b = std::atan2(-r(2, 0), cos_b);
-    if (cos_b > kGimbalLock) {
+    if (cos_b > gimbal_lock) {
         frame.a = std::atan2(r(2, 1), r(2, 2));
         frame.c = std::atan2(r(1, 0), r(0, 0));
     } else {

@@ -15,7 +15,6 @@ namespace metier::motion {
 namespace {
 
 using Eigen::Matrix3d;
-using motion::Pose;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
@@ -26,6 +25,7 @@ constexpr double kLimitRounding = 1e-10;
 constexpr double kResidual = 1e-10;
 constexpr double kNumericResidual = 1e-9;
 constexpr int kIterations = 40;
+constexpr int kRefinements = 20;
 constexpr int kRestarts = 400;
 
 /// Position and rotation (short way) from one transform to another.
@@ -41,7 +41,7 @@ Vector6 errorBetween(const Transform& from, const Transform& to) noexcept {
         const double scale = sine < 1e-8 ? 0.5 : 0.5 * std::asin(std::min(sine, 1.0)) / sine;
         error.tail<3>() = scale * twice_sine;
     } else {
-        error.tail<3>() = motion::toRotationVector(Eigen::Quaterniond(turn));
+        error.tail<3>() = toRotationVector(Eigen::Quaterniond(turn));
     }
     return error;
 }
@@ -50,8 +50,12 @@ Transform toTransform(const Pose& pose) {
     return {pose.rotation.toRotationMatrix(), pose.translation};
 }
 
-double wrapped(double angle) noexcept {
-    return angle - kTwoPi * std::floor((angle + std::numbers::pi) / kTwoPi);
+/// Turns each axis by whole turns into [-pi, pi).
+JointVector wrapped(JointVector joints) noexcept {
+    for (double& angle : joints) {
+        angle -= kTwoPi * std::floor((angle + std::numbers::pi) / kTwoPi);
+    }
+    return joints;
 }
 
 ClosedFormSolutions solveClosedForm(IkKind kind, const ZeroPosition& zero,
@@ -258,22 +262,16 @@ std::optional<JointVector> Kinematics::solveNumerically(const Pose& base_from_fl
     return std::nullopt;
 }
 
-JointSolutions Kinematics::allSolutions(const Pose& base_from_flange,
-                                        const JointVector& reference) const noexcept {
-    return allSolutions(base_from_flange, reference, redundancyAngle(reference));
-}
-
-JointSolutions Kinematics::allSolutions(const Pose& base_from_flange, const JointVector& reference,
-                                        double redundancy_angle) const noexcept {
+JointSolutions Kinematics::allSolutions(
+    const Pose& base_from_flange, const JointVector& reference,
+    const std::optional<double>& redundancy_angle) const noexcept {
     if (kind_ != IkKind::numeric) {
-        return closedForm(base_from_flange, reference, redundancy_angle);
+        return closedForm(base_from_flange, reference,
+                          redundancy_angle.value_or(redundancyAngle(reference)));
     }
     JointSolutions result;
     if (auto solution = solveNumerically(base_from_flange, reference, kIterations)) {
-        for (double& angle : *solution) {
-            angle = wrapped(angle);
-        }
-        result.add(*solution);
+        result.add(wrapped(*solution));
     }
     return result;
 }
@@ -286,8 +284,9 @@ JointSolutions Kinematics::closedForm(const Pose& base_from_flange, const JointV
     for (std::size_t i = 0; i < found.solutions.size(); ++i) {
         JointVector solution = found.solutions[i];
         if (calibrated_) {
-            if (refine(base_from_flange, solution) && !contains(result, solution)) {
-                result.add(solution);
+            const auto refined = solveNumerically(base_from_flange, solution, kRefinements);
+            if (refined && !contains(result, wrapped(*refined))) {
+                result.add(wrapped(*refined));
             }
             continue;
         }
@@ -297,19 +296,6 @@ JointSolutions Kinematics::closedForm(const Pose& base_from_flange, const JointV
         result.add(solution);
     }
     return result;
-}
-
-bool Kinematics::refine(const Pose& base_from_flange, JointVector& solution) const noexcept {
-    constexpr int iterations = 20;
-    const auto refined = solveNumerically(base_from_flange, solution, iterations);
-    if (!refined) {
-        return false;
-    }
-    solution = *refined;
-    for (double& angle : solution) {
-        angle = wrapped(angle);
-    }
-    return true;
 }
 
 std::optional<ReachMiss> Kinematics::outOfReach(const Pose& base_from_flange,

@@ -14,7 +14,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using motion::Pose;
 
 /// Turned about z, then put into the frame.
 void turn(Transform& frame, const Matrix3d& turned, double q) noexcept {
@@ -71,20 +70,6 @@ std::string toString(const ReachMiss& miss) {
     return fmt::format("unreachable: {} would be {:.4f} m from axis {}, {} {:.4f} m", miss.what,
                        miss.distance, miss.axis + 1, miss.tooNear() ? "at least" : "reach",
                        miss.limit);
-}
-
-std::string_view toString(IkKind kind) noexcept {
-    switch (kind) {
-        case IkKind::three_parallel_axes:
-            return "three_parallel_axes";
-        case IkKind::spherical_wrist:
-            return "spherical_wrist";
-        case IkKind::arm_angle:
-            return "arm_angle";
-        case IkKind::numeric:
-            return "numeric";
-    }
-    return "?";
 }
 
 Kinematics::Kinematics(const ChainDescription& chain) : axis_count_(chain.joints.size()) {

@@ -50,11 +50,10 @@ std::optional<Refusal> checkLimits(const TrackRequest& request, const JointVecto
             continue;
         }
         const bool over = q[i] > upper;
-        Refusal refusal = refuse(RefusalReason::joint_limit, Errc::out_of_range,
-                                 fmt::format("axis {}: {:.4f} rad {} limit {:.4f} rad", i + 1, q[i],
-                                             over ? "over" : "under", over ? upper : lower));
-        refusal.axis = i;
-        return refusal;
+        return refuse(RefusalReason::joint_limit, Errc::out_of_range,
+                      fmt::format("axis {}: {:.4f} rad {} limit {:.4f} rad", i + 1, q[i],
+                                  over ? "over" : "under", over ? upper : lower),
+                      i);
     }
     return std::nullopt;
 }
@@ -72,14 +71,13 @@ Refusal jump(const TrackRequest& request, const JointVector& from, const JointVe
     const double smallest = request.model->kinematics().smallestSingularValue(from);
     const std::string what = fmt::format("axis {} would have to turn {:.3f} rad in one place",
                                          axis + 1, std::abs(to[axis] - from[axis]));
-    Refusal refusal = smallest < kNearSingular
-                          ? refuse(RefusalReason::singularity, Errc::unreachable,
-                                   fmt::format("singularity: {}, smallest singular value {:.5f},",
-                                               what, smallest))
-                          : refuse(RefusalReason::configuration_change, Errc::unreachable,
-                                   "the arm would have to change its configuration: " + what);
-    refusal.axis = axis;
-    return refusal;
+    return smallest < kNearSingular
+               ? refuse(RefusalReason::singularity, Errc::unreachable,
+                        fmt::format("singularity: {}, smallest singular value {:.5f},", what,
+                                    smallest),
+                        axis)
+               : refuse(RefusalReason::configuration_change, Errc::unreachable,
+                        "the arm would have to change its configuration: " + what, axis);
 }
 
 /// Place at which a path is farthest out of reach, and the first place out of reach.
@@ -112,20 +110,20 @@ std::optional<Gap> findGap(const TrackRequest& request) {
     return gap;
 }
 
-Refusal unreachable(std::string_view where, const ReachMiss& miss, double begin) {
+tl::unexpected<Refusal> unreachable(std::string_view where, const ReachMiss& miss, double begin) {
     Refusal refusal = refuse(RefusalReason::unreachable, Errc::unreachable,
                              fmt::format("{}: {}, out of reach from {:.1f} % of the path on", where,
                                          toString(miss), 100 * begin));
     refusal.fraction = begin;
-    return refusal;
+    return tl::unexpected(std::move(refusal));
 }
 
 /// Refuses a target out of reach before anything is tracked: near the end of its reach an arm is
 /// singular, too, but the caller has to know the reach.
-std::optional<Refusal> refuseUnreachableTarget(const TrackRequest& request) {
+Checked refuseUnreachableTarget(const TrackRequest& request) {
     const auto miss = missAt(request, 1.0);
     if (!miss) {
-        return std::nullopt;
+        return {};
     }
     const auto gap = findGap(request);
     return unreachable("target", *miss, gap ? gap->begin : 1.0);
@@ -140,7 +138,7 @@ Track follow(const TrackRequest& request, const std::vector<double>& places, boo
     JointVector guess = request.start;
     for (std::size_t k = 1; k < places.size(); ++k) {
         const double s = places[k];
-        const motion::Pose flange = request.path.at(s);
+        const Pose flange = request.path.at(s);
         const JointVector q = kinematics.solutionNear(flange, guess, request.path.armAngleAt(s));
         const JointVector& last = track.knots.back();
         if (q.empty()) {
@@ -176,10 +174,10 @@ std::optional<std::size_t> firstOffPath(const TrackRequest& request,
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
         JointVector middle = knots[k];
         middle.view() = 0.5 * (knots[k].view() + knots[k + 1].view());
-        const motion::Pose reached = request.model->kinematics().forward(middle);
-        const motion::Pose planned = request.path.at((places[k] + places[k + 1]) / 2);
-        if (motion::distanceBetween(reached, planned) > kHalfWayDistance ||
-            motion::rotationAngleBetween(reached.rotation, planned.rotation) > kHalfWayAngle) {
+        const Pose reached = request.model->kinematics().forward(middle);
+        const Pose planned = request.path.at((places[k] + places[k + 1]) / 2);
+        if (distanceBetween(reached, planned) > kHalfWayDistance ||
+            rotationAngleBetween(reached.rotation, planned.rotation) > kHalfWayAngle) {
             return k;
         }
     }
@@ -189,10 +187,9 @@ std::optional<std::size_t> firstOffPath(const TrackRequest& request,
 /// The axes turn so quickly that no number of knots shows how.
 Refusal tooCurved(double s, const JointVector& from, const JointVector& to) {
     const std::size_t axis = largestStep(from, to);
-    Refusal refusal = refuse(RefusalReason::singularity, Errc::unreachable,
-                             fmt::format("singularity: axis {} cannot follow the path", axis + 1));
-    refusal.axis = axis;
-    return at(s, refusal);
+    return at(s,
+              refuse(RefusalReason::singularity, Errc::unreachable,
+                     fmt::format("singularity: axis {} cannot follow the path", axis + 1), axis));
 }
 
 Planned<JointPath> trackWithArmAngle(const TrackRequest& request, std::size_t most_knots) {
@@ -246,15 +243,13 @@ Planned<JointPath> trackWithSomeArmAngle(const TrackRequest& request) {
 }  // namespace
 
 Planned<JointPath> trackLine(const TrackRequest& request) {
-    if (auto refusal = refuseUnreachableTarget(request)) {
-        return tl::unexpected(*refusal);
-    }
+    METIER_TRY(refuseUnreachableTarget(request));
     auto path = trackWithSomeArmAngle(request);
     if (path || path.error().reason == RefusalReason::joint_limit) {
         return path;
     }
     if (const auto gap = findGap(request)) {
-        return tl::unexpected(unreachable("way", gap->worst, gap->begin));
+        return unreachable("way", gap->worst, gap->begin);
     }
     return path;
 }

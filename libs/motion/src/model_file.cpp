@@ -13,7 +13,6 @@ namespace {
 
 using cell::TomlFile;
 using cell::TomlTable;
-using motion::Pose;
 
 /// A required list of so many numbers.
 std::vector<double> numbers(const TomlTable& table, std::string_view key, std::size_t count) {
@@ -87,7 +86,7 @@ std::vector<double> angles(const TomlTable& table, std::string_view key, std::si
 
 Pose readFrame(const TomlTable& table, std::string_view key) {
     const std::vector<double> v = numbers(table, key, 6);
-    return motion::toPose({v[0], v[1], v[2], v[3], v[4], v[5]});
+    return toPose({v[0], v[1], v[2], v[3], v[4], v[5]});
 }
 
 Pose turnAbout(const Eigen::Vector3d& axis, double angle) {
@@ -135,7 +134,7 @@ JointRow readJoint(const TomlTable& table) {
     return row;
 }
 
-void readChain(const TomlTable& root, ChainDescription& chain) {
+void readJoints(const TomlTable& root, ChainDescription& chain) {
     Pose after_last;
     for (const TomlTable& table : root.tables("joint")) {
         JointRow row = readJoint(table);
@@ -196,36 +195,26 @@ VisualPrimitive readVisual(const TomlTable& table, std::size_t link_count) {
     return visual;
 }
 
-struct ModelFile {
-    std::string name;
-    std::string maker;
-    std::string product;
+ChainDescription readChain(const TomlTable& root) {
     ChainDescription chain;
-    std::vector<Capsule> capsules;
-    std::vector<VisualPrimitive> visual;
-};
-
-ModelFile readModel(const TomlTable& root) {
-    ModelFile file;
-    file.name = root.text("name");
-    file.maker = root.text("maker");
-    file.product = root.text("product");
-    file.chain.cycle_time = positive(root, "cycle_time");
-    readChain(root, file.chain);
-    const std::vector<double> home = angles(root, "home", file.chain.joints.size());
-    file.chain.home = JointVector::from(home).value_or(JointVector{});
-    file.chain.cartesian_limits = readCartesian(root.table("cartesian"));
+    chain.cycle_time = positive(root, "cycle_time");
+    readJoints(root, chain);
+    const std::vector<double> home = angles(root, "home", chain.joints.size());
+    chain.home = JointVector::from(home).value_or(JointVector{});
+    chain.cartesian_limits = readCartesian(root.table("cartesian"));
     for (const TomlTable& table : root.tables("tool")) {
-        file.chain.tools.push_back(readTool(table));
+        chain.tools.push_back(readTool(table));
     }
-    const std::size_t link_count = file.chain.joints.size() + 1;
+    return chain;
+}
+
+void readShape(const TomlTable& root, std::size_t link_count, RobotAppearance& appearance) {
     for (const TomlTable& table : root.tables("capsule")) {
-        file.capsules.push_back(readCapsule(table, link_count));
+        appearance.capsules.push_back(readCapsule(table, link_count));
     }
     for (const TomlTable& table : root.tables("visual")) {
-        file.visual.push_back(readVisual(table, link_count));
+        appearance.visual.push_back(readVisual(table, link_count));
     }
-    return file;
 }
 
 }  // namespace
@@ -241,17 +230,16 @@ Result<RobotModel> RobotModel::parse(std::string_view text, const std::string& n
 }
 
 Result<RobotModel> RobotModel::read(const TomlFile& toml, const std::string& file_name) {
-    ModelFile file = readModel(toml.root());
+    const TomlTable root = toml.root();
+    RobotAppearance appearance{root.text("name"), root.text("maker"), root.text("product"), {}, {}};
+    ChainDescription chain = readChain(root);
+    readShape(root, chain.joints.size() + 1, appearance);
     METIER_TRY(toml.finish());
-    auto model = fromChain(std::move(file.chain));
+    auto model = fromChain(std::move(chain));
     if (!model) {
         return fail(model.error().code, file_name + ": " + model.error().message);
     }
-    model->name_ = std::move(file.name);
-    model->maker_ = std::move(file.maker);
-    model->product_ = std::move(file.product);
-    model->capsules_ = std::move(file.capsules);
-    model->visual_ = std::move(file.visual);
+    model->appearance_ = std::move(appearance);
     return model;
 }
 

@@ -4,11 +4,6 @@
 
 namespace metier::motion {
 
-namespace {
-// A stop along the path is planned anew where this part of its time is enough [1].
-constexpr double kWorthwhile = 0.97;
-}  // namespace
-
 MotionRun::MotionRun(Trajectory trajectory, const LateCyclePolicy& late) noexcept
     : trajectory_(std::move(trajectory)),
       late_(late),
@@ -47,6 +42,7 @@ ScalarState MotionRun::onClock() const noexcept {
 
 /// The slower it gets the less of the limits goes into the bends of the path: the more is left.
 void MotionRun::brakeHarder() noexcept {
+    constexpr double worthwhile = 0.97;  // part of its time with which a stop is planned anew
     const bool lets_go = profile_.jerkAt(profile_time_) > 0;
     if (mode_ != Mode::stopping || brake_factor_ == 0 || atRest() || lets_go) {
         return;
@@ -54,7 +50,7 @@ void MotionRun::brakeHarder() noexcept {
     const ScalarState now = onPath();
     const Profile harder = trajectory_.brake(now, brake_factor_);
     if (harder.end() <= 1.0 && harder.jerkAt(0) <= 0 &&
-        harder.duration() < kWorthwhile * (profile_.duration() - profile_time_)) {
+        harder.duration() < worthwhile * (profile_.duration() - profile_time_)) {
         follow(harder, Along::path, now);
     }
 }
@@ -159,8 +155,8 @@ StoppingEstimate MotionRun::stoppingEstimate() const noexcept {
     const Profile halt = trajectory_.brake(now, kHaltFactor);
     const Seconds time = std::min(Seconds(halt.duration()), remaining());
     const SetPoint end = trajectory_.sampleOnPath({std::min(halt.end(), 1.0), 0.0, 0.0});
-    return {time, motion::distanceBetween(trajectory_.toolPose(current_.position),
-                                          trajectory_.toolPose(end.position))};
+    return {time, distanceBetween(trajectory_.toolPose(current_.position),
+                                  trajectory_.toolPose(end.position))};
 }
 
 }  // namespace metier::motion

@@ -27,11 +27,11 @@ struct JointLine {
 /// Path of the flange: that of a tool frame on it and, for an arm that has one, its arm angle.
 struct FlangePath {
     ToolPath tool;
-    motion::Pose tool_from_flange;
+    Pose tool_from_flange;
     double arm_angle = 0;       ///< arm angle at the start [rad]
     double arm_angle_turn = 0;  ///< change of the arm angle from start to end [rad]
 
-    motion::Pose at(double s) const noexcept { return tool.at(s) * tool_from_flange; }
+    Pose at(double s) const noexcept { return tool.at(s) * tool_from_flange; }
     double armAngleAt(double s) const noexcept { return arm_angle + s * arm_angle_turn; }
 };
 

@@ -1,46 +1,41 @@
 #include "path_layout.hpp"
 
 #include "metier/motion/rotation.hpp"
-#include "request_check.hpp"
 
 namespace metier::motion {
-
-using motion::Pose;
 
 namespace {
 
 /// A smaller corner is lost in the rounding of joint positions [m].
 constexpr double kLeastBlendRadius = 1e-9;
 
-Refusal atWaypoint(const PathRequest& request, std::size_t index, Refusal refusal) {
+tl::unexpected<Refusal> atWaypoint(const PathRequest& request, std::size_t index, Refusal refusal) {
     refusal.error.message = fmt::format("waypoint {}: {}", index + 1, refusal.error.message);
     refusal.fraction =
         static_cast<double>(index + 1) / static_cast<double>(request.waypoints.size());
-    return refusal;
+    return tl::unexpected(std::move(refusal));
 }
 
 /// Why the path cannot go on to a waypoint that it has a corner before.
-std::optional<Refusal> refuseCorner(const ToolPath& path, const Pose& corner, const Pose& target,
-                                    double radius) {
+Checked refuseCorner(const ToolPath& path, const Pose& corner, const Pose& target, double radius) {
     constexpr double rounding = 1e-9;
-    const bool same = motion::distanceBetween(corner, target) == 0 &&
-                      motion::rotationAngleBetween(corner.rotation, target.rotation) == 0;
+    const bool same = distanceBetween(corner, target) == 0 &&
+                      rotationAngleBetween(corner.rotation, target.rotation) == 0;
     if (same) {
-        return refuse(RefusalReason::invalid_request, Errc::invalid_argument,
-                      "the next waypoint is the same pose: no line leads there");
+        return invalid("the next waypoint is the same pose: no line leads there");
     }
     if (radius < kLeastBlendRadius) {
-        return refuse(RefusalReason::invalid_request, Errc::out_of_range,
-                      fmt::format("blend radius {} m under {} m: no arm could follow the corner",
-                                  radius, kLeastBlendRadius));
+        return invalid(fmt::format("blend radius {} m under {} m: no arm could follow the corner",
+                                   radius, kLeastBlendRadius),
+                       Errc::out_of_range);
     }
     if (const double limit = path.blendLimit(target); radius > limit + rounding) {
-        return refuse(RefusalReason::invalid_request, Errc::out_of_range,
-                      fmt::format("blend radius {} m over {:.4f} m, half of the shorter line "
-                                  "beside it",
-                                  radius, limit));
+        return invalid(
+            fmt::format("blend radius {} m over {:.4f} m, half of the shorter line beside it",
+                        radius, limit),
+            Errc::out_of_range);
     }
-    return std::nullopt;
+    return {};
 }
 
 }  // namespace
@@ -57,8 +52,8 @@ Pose absoluteTarget(const Pose& start, const Pose& target, TargetReference refer
     return {target.translation, target.rotation.normalized()};
 }
 
-std::optional<Refusal> layOut(const RobotModel& model, const PathRequest& request,
-                              const Pose& flange_from_tool, ToolPath& path) {
+Checked layOut(const RobotModel& model, const PathRequest& request, const Pose& flange_from_tool,
+               ToolPath& path) {
     const Pose tool_from_flange = flange_from_tool.inverse();
     Pose before = model.kinematics().forward(request.lin.start) * flange_from_tool;
     for (std::size_t i = 0; i < request.waypoints.size(); ++i) {
@@ -75,14 +70,14 @@ std::optional<Refusal> layOut(const RobotModel& model, const PathRequest& reques
             path = ToolPath(before, target);
         } else {
             const double radius = request.waypoints[i - 1].blend_radius;
-            if (const auto refusal = refuseCorner(path, before, target, radius)) {
-                return atWaypoint(request, i - 1, *refusal);
+            if (const auto checked = refuseCorner(path, before, target, radius); !checked) {
+                return atWaypoint(request, i - 1, checked.error());
             }
             path.append(target, radius);
         }
         before = target;
     }
-    return std::nullopt;
+    return {};
 }
 
 Refusal onTheWay(Refusal refusal, const ToolPath& path, const PathRequest& request) {

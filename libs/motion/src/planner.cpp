@@ -16,7 +16,7 @@ namespace metier::motion {
 
 namespace {
 
-using motion::Pose;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double perAxis(const JointVector& values, std::size_t axis) {
     return values.empty() ? 0.0 : values[axis];
@@ -43,8 +43,11 @@ ScalarLimits limitsOfJointLine(const RobotModel& model, const PtpRequest& reques
 
 Trajectory makeTrajectory(const RobotModel& model, std::variant<JointLine, JointPath> path,
                           SpeedPlan speed, const Pose& flange_from_tool) {
-    return Trajectory(std::make_shared<const Trajectory::Plan>(model, std::move(path),
-                                                               std::move(speed), flange_from_tool));
+    auto braking =
+        std::visit([&](const auto& of) { return LimitsAlong::ofRobot(model, of); }, path);
+    return Trajectory(std::make_shared<const Trajectory::Plan>(
+        Trajectory::Plan{model.kinematics(), std::move(path), std::move(speed), flange_from_tool,
+                         std::move(braking)}));
 }
 
 /// A motion that is over as soon as it starts.
@@ -98,9 +101,7 @@ Planned<Trajectory> withoutCollision(const RobotModel& model, Trajectory traject
 /// Follows a path, unless it is singular.
 Planned<TrackedPath> track(const TrackRequest& request, const PlannerOptions& options) {
     METIER_ASSIGN(auto path, trackLine(request));
-    if (auto refusal = refuseSingular(*request.model, path, options)) {
-        return tl::unexpected(*refusal);
-    }
+    METIER_TRY(refuseSingular(*request.model, path, options));
     auto bounds = axisBounds(*request.model, path);
     return TrackedPath{std::move(path), std::move(bounds)};
 }
@@ -111,6 +112,12 @@ Trajectory quickestAlong(const RobotModel& model, TrackedPath path, const Pose& 
     return makeTrajectory(model, std::move(path.joints), std::move(speed), flange_from_tool);
 }
 
+Planned<ToolFrame> toolOf(const RobotModel& model, std::string_view name) {
+    return model.tool(name).map_error([](const Error& error) {
+        return refuse(RefusalReason::invalid_request, error.code, error.message);
+    });
+}
+
 Refusal targetRefusal(const Error& error) {
     Refusal refusal = refuse(error.code == Errc::unreachable ? RefusalReason::unreachable
                                                              : RefusalReason::invalid_request,
@@ -119,15 +126,28 @@ Refusal targetRefusal(const Error& error) {
     return refusal;
 }
 
-template <typename Request>
-Result<Trajectory> withoutRefusal(Planned<Trajectory> (Planner::*plan)(const Request&) const,
-                                  const RobotModel& model, const Request& request) {
-    const Planner planner(model);
-    auto planned = (planner.*plan)(request);
-    if (!planned) {
-        return fail(planned.error().error);
+/// \return the request without its path, which goes from `lin.start`
+TrackRequest trackRequest(const RobotModel& model, const LinRequest& lin, const ToolFrame& tool) {
+    TrackRequest request;
+    request.model = &model;
+    request.start = lin.start;
+    request.bounds = lin.axis_bounds;
+    request.end_arm_angle = lin.redundancy_angle;
+    request.path.tool_from_flange = tool.flange_from_tool.inverse();
+    return request;
+}
+
+StoppingEstimate longestStop(const Trajectory& trajectory) {
+    constexpr int kPlaces = 200;
+    StoppingEstimate longest;
+    MotionRun execution(trajectory);
+    for (int i = 0; i < kPlaces; ++i) {
+        execution.next(trajectory.duration() / kPlaces);
+        const auto way = execution.stoppingEstimate();
+        longest.time = std::max(longest.time, way.time);
+        longest.distance = std::max(longest.distance, way.distance);
     }
-    return std::move(*planned);
+    return longest;
 }
 
 }  // namespace
@@ -153,146 +173,73 @@ std::string_view toString(RefusalReason reason) noexcept {
 Planned<Trajectory> Planner::ptp(const PtpRequest& request) const {
     const RobotModel& model = *model_;
     METIER_TRY(checkPtp(model, request));
-    const auto tool = model.tool(request.tool_frame);
-    if (!tool) {
-        return invalid(tool.error());
-    }
+    METIER_ASSIGN(const auto tool, toolOf(model, request.tool_frame));
     if (const auto* joints = std::get_if<JointVector>(&request.target)) {
         METIER_TRY(checkPosition(model, *joints, "target", 1e-9));
         return withoutCollision(model,
-                                planJointLine(model, request, *joints, tool->flange_from_tool));
+                                planJointLine(model, request, *joints, tool.flange_from_tool));
     }
     const Pose& pose = std::get<Pose>(request.target);
     METIER_TRY(checkPose(pose));
-    const Pose start = model.kinematics().forward(request.start) * tool->flange_from_tool;
+    const Pose start = model.kinematics().forward(request.start) * tool.flange_from_tool;
     const Pose flange =
-        absoluteTarget(start, pose, request.reference) * tool->flange_from_tool.inverse();
+        absoluteTarget(start, pose, request.reference) * tool.flange_from_tool.inverse();
     const auto target = model.kinematics().inverse(
         flange, {request.start, request.axis_bounds, request.redundancy_angle});
     if (!target) {
         return tl::unexpected(targetRefusal(target.error()));
     }
-    return withoutCollision(model, planJointLine(model, request, *target, tool->flange_from_tool));
+    return withoutCollision(model, planJointLine(model, request, *target, tool.flange_from_tool));
 }
 
 Planned<Trajectory> Planner::lin(const LinRequest& request) const {
     METIER_TRY(checkLin(*model_, request));
-    const auto tool = model_->tool(request.tool_frame);
-    if (!tool) {
-        return invalid(tool.error());
-    }
-    const Pose start = model_->kinematics().forward(request.start) * tool->flange_from_tool;
-    const Pose target = absoluteTarget(start, request.target, request.reference);
-    TrackRequest wanted;
-    wanted.model = model_;
-    wanted.start = request.start;
-    wanted.bounds = request.axis_bounds;
-    wanted.end_arm_angle = request.redundancy_angle;
-    wanted.path.tool = ToolPath(start, target);
-    wanted.path.tool_from_flange = tool->flange_from_tool.inverse();
+    METIER_ASSIGN(const auto tool, toolOf(*model_, request.tool_frame));
+    const Pose start = model_->kinematics().forward(request.start) * tool.flange_from_tool;
+    TrackRequest wanted = trackRequest(*model_, request, tool);
+    wanted.path.tool = ToolPath(start, absoluteTarget(start, request.target, request.reference));
     if (wanted.path.tool.isPoint()) {
-        return standStill(*model_, request.start, tool->flange_from_tool);
+        return standStill(*model_, request.start, tool.flange_from_tool);
     }
     METIER_ASSIGN(auto path, track(wanted, options_));
     const ScalarLimits limits = limitsOfLine(*model_, request, wanted.path.tool);
-    if (auto refusal = refuseCrawling(*model_, path, limits.velocity, options_)) {
-        return tl::unexpected(*refusal);
-    }
+    METIER_TRY(refuseCrawling(*model_, path, limits.velocity, options_));
     for (SpeedBounds& at : path.bounds) {
         at.add({1, 0, 0, limits.velocity, limits.acceleration, limits.jerk});
     }
     return withoutCollision(*model_,
-                            quickestAlong(*model_, std::move(path), tool->flange_from_tool));
+                            quickestAlong(*model_, std::move(path), tool.flange_from_tool));
 }
 
 Planned<Trajectory> Planner::path(const PathRequest& request) const {
     METIER_TRY(checkPath(*model_, request));
-    const auto tool = model_->tool(request.lin.tool_frame);
-    if (!tool) {
-        return invalid(tool.error());
-    }
-    const LinRequest& lin = request.lin;
-    TrackRequest wanted;
-    wanted.model = model_;
-    wanted.start = lin.start;
-    wanted.bounds = lin.axis_bounds;
-    wanted.end_arm_angle = lin.redundancy_angle;
-    wanted.path.tool_from_flange = tool->flange_from_tool.inverse();
-    if (auto refusal = layOut(*model_, request, tool->flange_from_tool, wanted.path.tool)) {
-        return tl::unexpected(*refusal);
-    }
+    METIER_ASSIGN(const auto tool, toolOf(*model_, request.lin.tool_frame));
+    TrackRequest wanted = trackRequest(*model_, request.lin, tool);
+    METIER_TRY(layOut(*model_, request, tool.flange_from_tool, wanted.path.tool));
     if (wanted.path.tool.isPoint()) {
-        return standStill(*model_, lin.start, tool->flange_from_tool);
+        return standStill(*model_, request.lin.start, tool.flange_from_tool);
     }
     auto path = track(wanted, options_);
     if (!path) {
         return tl::unexpected(onTheWay(path.error(), wanted.path.tool, request));
     }
     const double fastest = addToolBounds(*model_, request, path->joints, path->bounds);
-    if (auto refusal = refuseCrawling(*model_, *path, fastest, options_)) {
-        return tl::unexpected(*refusal);
-    }
+    METIER_TRY(refuseCrawling(*model_, *path, fastest, options_));
     return withoutCollision(*model_,
-                            quickestAlong(*model_, std::move(*path), tool->flange_from_tool));
+                            quickestAlong(*model_, std::move(*path), tool.flange_from_tool));
 }
 
 Planned<Trajectory> Planner::jointLinear(const JointLinearRequest& request) const {
     METIER_TRY(checkPosition(*model_, request.target, "target", 1e-9));
-    const auto tool = model_->tool(request.lin.tool_frame);
-    if (!tool) {
-        return invalid(tool.error());
-    }
+    METIER_ASSIGN(const auto tool, toolOf(*model_, request.lin.tool_frame));
     LinRequest lin_request = request.lin;
-    lin_request.target = model_->kinematics().forward(request.target) * tool->flange_from_tool;
+    lin_request.target = model_->kinematics().forward(request.target) * tool.flange_from_tool;
     lin_request.reference = TargetReference::base;
     if (model_->kinematics().ikKind() == IkKind::arm_angle) {
         lin_request.redundancy_angle = model_->kinematics().redundancyAngle(request.target);
     }
     return lin(lin_request);
 }
-
-Result<Trajectory> planPtp(const RobotModel& model, const PtpRequest& request) {
-    return withoutRefusal(&Planner::ptp, model, request);
-}
-
-Result<Trajectory> planLin(const RobotModel& model, const LinRequest& request) {
-    return withoutRefusal(&Planner::lin, model, request);
-}
-
-Result<Trajectory> planPath(const RobotModel& model, const PathRequest& request) {
-    return withoutRefusal(&Planner::path, model, request);
-}
-
-Result<Trajectory> planJointLinear(const RobotModel& model, const JointLinearRequest& request) {
-    return withoutRefusal(&Planner::jointLinear, model, request);
-}
-
-void synchronise(std::vector<Trajectory>& trajectories) {
-    Seconds slowest{0};
-    for (const Trajectory& trajectory : trajectories) {
-        slowest = std::max(slowest, trajectory.duration());
-    }
-    for (Trajectory& trajectory : trajectories) {
-        trajectory = trajectory.stretchedTo(slowest);
-    }
-}
-
-namespace {
-
-StoppingEstimate longestStop(const Trajectory& trajectory) {
-    constexpr int kPlaces = 200;
-    StoppingEstimate longest;
-    MotionRun execution(trajectory);
-    for (int i = 0; i < kPlaces; ++i) {
-        execution.next(trajectory.duration() / kPlaces);
-        const auto way = execution.stoppingEstimate();
-        longest.time = std::max(longest.time, way.time);
-        longest.distance = std::max(longest.distance, way.distance);
-    }
-    return longest;
-}
-
-}  // namespace
 
 Feasibility assess(const Planned<Trajectory>& plan, std::size_t preview_points) {
     Feasibility result;

@@ -5,21 +5,12 @@
 
 namespace metier::motion {
 
-using motion::Pose;
-
-Refusal refuse(RefusalReason reason, Errc code, std::string text) {
-    Refusal refusal;
-    refusal.reason = reason;
-    refusal.error = {code, std::move(text)};
-    return refusal;
+Refusal refuse(RefusalReason reason, Errc code, std::string text, std::optional<std::size_t> axis) {
+    return {reason, {code, std::move(text)}, 0, axis};
 }
 
 tl::unexpected<Refusal> invalid(std::string text, Errc code) {
     return tl::unexpected(refuse(RefusalReason::invalid_request, code, std::move(text)));
-}
-
-tl::unexpected<Refusal> invalid(const Error& error) {
-    return invalid(error.message, error.code);
 }
 
 Checked checkPosition(const RobotModel& model, const JointVector& q, std::string_view what,
@@ -33,12 +24,11 @@ Checked checkPosition(const RobotModel& model, const JointVector& q, std::string
             continue;
         }
         const bool over = q[i] > limits.upper;
-        Refusal refusal =
+        return tl::unexpected(
             refuse(RefusalReason::joint_limit, Errc::out_of_range,
                    fmt::format("{}: axis {}: {:.4f} rad {} limit {:.4f} rad", what, i + 1, q[i],
-                               over ? "over" : "under", over ? limits.upper : limits.lower));
-        refusal.axis = i;
-        return tl::unexpected(refusal);
+                               over ? "over" : "under", over ? limits.upper : limits.lower),
+                   i));
     }
     return {};
 }

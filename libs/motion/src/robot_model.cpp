@@ -30,7 +30,7 @@ Result<void> checkLimits(const JointDescription& joint, std::size_t axis) {
     return {};
 }
 
-bool isRigid(const motion::Pose& pose) {
+bool isRigid(const Pose& pose) {
     return pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1.0) < 1e-9;
 }
 
@@ -105,15 +105,11 @@ Result<RobotModel> RobotModel::fromChain(ChainDescription chain) {
 Result<RobotModel> RobotModel::withChain(ChainDescription chain) const {
     if (chain.joints.size() != axisCount()) {
         return fail(Errc::invalid_argument, fmt::format("a chain of {} axes for {}, which has {}",
-                                                        chain.joints.size(), name_, axisCount()));
+                                                        chain.joints.size(), name(), axisCount()));
     }
     auto changed = fromChain(std::move(chain));
     if (changed) {
-        changed->name_ = name_;
-        changed->maker_ = maker_;
-        changed->product_ = product_;
-        changed->capsules_ = capsules_;
-        changed->visual_ = visual_;
+        changed->appearance_ = appearance_;
     }
     return changed;
 }

@@ -67,7 +67,7 @@ std::optional<LinkPair> SelfCollision::nearest(const JointVector& q) const noexc
         const Capsule& capsule = capsules_[i];
         segments[i] = {capsule.from, capsule.to};
         if (capsule.link > 0) {
-            const motion::Pose& frame = frames[capsule.link - 1];
+            const Pose& frame = frames[capsule.link - 1];
             segments[i] = {frame * capsule.from, frame * capsule.to};
         }
     }

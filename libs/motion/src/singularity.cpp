@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "request_check.hpp"
-
 namespace metier::motion {
 
 namespace {
@@ -34,22 +32,19 @@ std::size_t largest(const JointVector& values) {
     return axis;
 }
 
-Refusal singular(const Step& step, double value, double limit, double fraction) {
-    const std::size_t axis = largest(step.axes);
+/// \param text after "singularity: " and before the place
+tl::unexpected<Refusal> singular(std::string_view text, std::size_t axis, double fraction) {
     Refusal refusal =
         refuse(RefusalReason::singularity, Errc::unreachable,
-               fmt::format("singularity: smallest singular value {:.5f}, limit {:.5f}, axis {} "
-                           "turns most, at {:.1f} % of the path",
-                           value, limit, axis + 1, 100 * fraction));
+               fmt::format("singularity: {}, at {:.1f} % of the path", text, 100 * fraction), axis);
     refusal.fraction = fraction;
-    refusal.axis = axis;
-    return refusal;
+    return tl::unexpected(std::move(refusal));
 }
 
 }  // namespace
 
-std::optional<Refusal> refuseSingular(const RobotModel& model, const JointPath& path,
-                                      const PlannerOptions& options) {
+Checked refuseSingular(const RobotModel& model, const JointPath& path,
+                       const PlannerOptions& options) {
     const std::vector<JointVector>& knots = path.knots();
     const Kinematics& kinematics = model.kinematics();
     const double limit = options.smallest_singular_value;
@@ -64,28 +59,26 @@ std::optional<Refusal> refuseSingular(const RobotModel& model, const JointPath& 
         }
         const double value = kinematics.smallestSingularValue(knots[k]);
         if (value < limit) {
-            return singular(step, value, limit, path.places()[k]);
+            const std::size_t axis = largest(step.axes);
+            return singular(
+                fmt::format("smallest singular value {:.5f}, limit {:.5f}, axis {} turns most",
+                            value, limit, axis + 1),
+                axis, path.places()[k]);
         }
     }
-    return std::nullopt;
+    return {};
 }
 
-std::optional<Refusal> refuseCrawling(const RobotModel& model, const TrackedPath& path,
-                                      double speed, const PlannerOptions& options) {
+Checked refuseCrawling(const RobotModel& model, const TrackedPath& path, double speed,
+                       const PlannerOptions& options) {
     const SpeedBottleneck slowest = findBottleneck(model, path.bounds, speed);
     if (slowest.share >= options.slowest_share) {
-        return std::nullopt;
+        return {};
     }
-    const double fraction = path.joints.places()[slowest.knot];
-    Refusal refusal =
-        refuse(RefusalReason::singularity, Errc::unreachable,
-               fmt::format("singularity: axis {} slows the path to {:.2f} % of the requested "
-                           "speed, limit {:.2f} %, at {:.1f} % of the path",
-                           slowest.axis + 1, 100 * slowest.share, 100 * options.slowest_share,
-                           100 * fraction));
-    refusal.fraction = fraction;
-    refusal.axis = slowest.axis;
-    return refusal;
+    return singular(
+        fmt::format("axis {} slows the path to {:.2f} % of the requested speed, limit {:.2f} %",
+                    slowest.axis + 1, 100 * slowest.share, 100 * options.slowest_share),
+        slowest.axis, path.joints.places()[slowest.knot]);
 }
 
 }  // namespace metier::motion

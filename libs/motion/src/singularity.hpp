@@ -1,10 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "metier/motion/planner.hpp"
 #include "path.hpp"
+#include "request_check.hpp"
 #include "speed_bounds.hpp"
 
 namespace metier::motion {
@@ -16,12 +16,12 @@ struct TrackedPath {
 };
 
 /// Refuses a path on which the arm loses a direction that the path needs.
-std::optional<Refusal> refuseSingular(const RobotModel& model, const JointPath& path,
-                                      const PlannerOptions& options);
+Checked refuseSingular(const RobotModel& model, const JointPath& path,
+                       const PlannerOptions& options);
 
 /// Refuses a path that an axis would make too slow to be meant.
 /// \param speed requested, of the path parameter [1/s]
-std::optional<Refusal> refuseCrawling(const RobotModel& model, const TrackedPath& path,
-                                      double speed, const PlannerOptions& options);
+Checked refuseCrawling(const RobotModel& model, const TrackedPath& path, double speed,
+                       const PlannerOptions& options);
 
 }  // namespace metier::motion

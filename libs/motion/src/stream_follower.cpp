@@ -166,7 +166,6 @@ std::optional<StreamRefusal> StreamFollower::accept(const JointVector& position,
     store(position, time);
     fresh_ = true;
     state_ = State::following;
-    ++accepted_;
     return std::nullopt;
 }
 

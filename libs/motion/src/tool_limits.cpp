@@ -3,23 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metier/base/numbers.hpp"
-
 namespace metier::motion {
 
 namespace {
 
 /// Cartesian jerk limit as a multiple of a lowered acceleration limit [1/s].
 constexpr double kJerkPerAcceleration = 20.0;
-
-/// Largest change of the path parameter at which `vector` changes by no more than `limit`.
-double perLength(double limit, const Eigen::Vector3d& vector) {
-    const double length = vector.norm();
-    if (length == 0) {
-        return kInfinity;
-    }
-    return limit / length;
-}
 
 /// A vector of the path, of position or of rotation, and the three limits of its kind.
 struct HalfLimits {
@@ -29,49 +18,32 @@ struct HalfLimits {
 };
 
 /// Limit of the path parameter's derivative: of the vector's length where all three limits are
-/// equal, else of each component; the robot's own always of the length.
+/// equal, else of each component; the robot's own always of the length. Infinite without a length.
 double scalarLimit(const HalfLimits& half) {
-    const double length = half.vector.norm();
-    if (length == 0) {
-        return kInfinity;
-    }
     const double* r = half.requested;
-    double limit = half.own / length;
     if (r[0] == r[1] && r[1] == r[2]) {
-        return std::min(limit, capped(r[0], half.own) / length);
+        return capped(r[0], half.own) / half.vector.norm();
     }
+    double limit = half.own / half.vector.norm();
     for (int i = 0; i < 3; ++i) {
-        const double component = std::abs(half.vector[i]);
-        limit = component > 0 ? std::min(limit, capped(r[i], half.own) / component) : limit;
+        limit = std::min(limit, capped(r[i], half.own) / std::abs(half.vector[i]));
     }
     return limit;
 }
-
-/// The tool frame's translation or rotation: what it may do and asks of the path parameter.
-struct ToolBound {
-    double velocity = 0;
-    double acceleration = 0;
-    double jerk = 0;
-
-    SpeedBound at(const ToolDerivatives& d, double max_velocity) const noexcept {
-        return {d.first, d.second, d.third, max_velocity, acceleration, jerk, true};
-    }
-};
 
 /// The least of three requested values, capped by the robot's own.
 double least(const double* three, double own) {
     return capped(three[0], capped(three[1], capped(three[2], own)));
 }
 
-ToolBound toolBound(double velocity, double acceleration, double own_jerk) {
+/// What the tool frame's translation or rotation may do.
+ScalarLimits toolLimits(double velocity, double acceleration, double own_jerk) {
     return {velocity, acceleration, std::min(own_jerk, kJerkPerAcceleration * acceleration)};
 }
 
-double speedAt(const SpeedBound& bound) {
-    if (bound.first <= 0) {
-        return kInfinity;
-    }
-    return bound.velocity / bound.first;
+/// \param d what the tool frame asks of the path parameter
+SpeedBound boundOf(const ToolDerivatives& d, const ScalarLimits& limits, double max_velocity) {
+    return {d.first, d.second, d.third, max_velocity, limits.acceleration, limits.jerk, true};
 }
 
 }  // namespace
@@ -89,9 +61,8 @@ ScalarLimits limitsOfLine(const RobotModel& model, const LinRequest& request,
                                           scalarLimit({v + 3, own.angular_velocity, turn}));
     limits.acceleration = std::min(scalarLimit({a, own.acceleration, direction}),
                                    scalarLimit({a + 3, own.angular_acceleration, turn}));
-    const double own_jerk =
-        std::min(perLength(own.jerk, direction), perLength(own.angular_jerk, turn));
-    limits.jerk = std::min(own_jerk, kJerkPerAcceleration * limits.acceleration);
+    limits.jerk = std::min({own.jerk / direction.norm(), own.angular_jerk / turn.norm(),
+                            kJerkPerAcceleration * limits.acceleration});
     return limits;
 }
 
@@ -101,10 +72,11 @@ double addToolBounds(const RobotModel& model, const PathRequest& request, const 
     const LinRequest& lin = request.lin;
     const double* v = lin.max_velocity.data();
     const double* a = lin.max_acceleration.data();
-    const ToolBound linear =
-        toolBound(least(v, own.velocity), least(a, own.acceleration), own.jerk);
-    const ToolBound angular = toolBound(least(v + 3, own.angular_velocity),
-                                        least(a + 3, own.angular_acceleration), own.angular_jerk);
+    const ScalarLimits linear =
+        toolLimits(least(v, own.velocity), least(a, own.acceleration), own.jerk);
+    const ScalarLimits angular =
+        toolLimits(least(v + 3, own.angular_velocity), least(a + 3, own.angular_acceleration),
+                   own.angular_jerk);
     double fastest = 0;
     for (std::size_t k = 0; k < bounds.size(); ++k) {
         const double s = path.places()[k];
@@ -118,10 +90,11 @@ double addToolBounds(const RobotModel& model, const PathRequest& request, const 
             velocity = capped(waypoint.max_velocity, velocity);
             angular_velocity = capped(waypoint.max_angular_velocity, angular_velocity);
         }
-        const SpeedBound t = linear.at(path.tool().translationAt(s), lin.speed_override * velocity);
+        const SpeedBound t =
+            boundOf(path.tool().translationAt(s), linear, lin.speed_override * velocity);
         const SpeedBound r =
-            angular.at(path.tool().rotationAt(s), lin.speed_override * angular_velocity);
-        fastest = std::max(fastest, std::min(speedAt(t), speedAt(r)));
+            boundOf(path.tool().rotationAt(s), angular, lin.speed_override * angular_velocity);
+        fastest = std::max(fastest, std::min(t.velocity / t.first, r.velocity / r.first));
         bounds[k].add(t);
         bounds[k].add(r);
     }

@@ -11,7 +11,6 @@ namespace metier::motion {
 namespace {
 
 using Eigen::Vector3d;
-using motion::Pose;
 
 /// Length that a rotation counts for where it is more than the translation [m/rad].
 constexpr double kLengthPerAngle = 0.25;
@@ -77,7 +76,7 @@ ToolPath::ToolPath(const Pose& start, const Pose& target) : end_(start) {
 
 ToolPath::Piece ToolPath::lineBetween(const Pose& start, const Pose& target) {
     const Vector3d direction = target.translation - start.translation;
-    const Vector3d turn = motion::rotationVectorBetween(start.rotation, target.rotation);
+    const Vector3d turn = rotationVectorBetween(start.rotation, target.rotation);
     Piece piece;
     piece.length = std::max(direction.norm(), kLengthPerAngle * turn.norm());
     piece.whole = piece.length;
@@ -131,7 +130,7 @@ void ToolPath::append(const Pose& target, double blend_radius) {
     to.begin += half;
     to.length -= half;
     to.pose = {to.pose.translation + half * to.in.velocity,
-               motion::fromRotationVector(half * to.in.spin) * to.pose.rotation};
+               fromRotationVector(half * to.in.spin) * to.pose.rotation};
     pieces_.insert(pieces_.begin() + static_cast<std::ptrdiff_t>(before) + 1, corner);
 }
 
@@ -217,12 +216,12 @@ Pose ToolPath::at(double s) const noexcept {
     const double along = length - piece.begin;
     if (!piece.corner) {
         return {piece.pose.translation + along * piece.in.velocity,
-                motion::fromRotationVector(along * piece.in.spin) * piece.pose.rotation};
+                fromRotationVector(along * piece.in.spin) * piece.pose.rotation};
     }
     const double out = wayOut(piece, along);
     const double in = wayIn(piece, along);
-    return {translationIn(piece, along), motion::fromRotationVector(out * piece.out.spin) *
-                                             motion::fromRotationVector(in * piece.in.spin) *
+    return {translationIn(piece, along), fromRotationVector(out * piece.out.spin) *
+                                             fromRotationVector(in * piece.in.spin) *
                                              piece.pose.rotation};
 }
 
@@ -260,10 +259,9 @@ double ToolPath::nearestOn(const Piece& piece, const Pose& pose) const noexcept 
     };
     if (!piece.corner) {
         const bool moves = piece.in.velocity.norm() > 0;
-        return clamped(
-            moves ? share(pose.translation - piece.pose.translation, piece.in.velocity)
-                  : share(motion::rotationVectorBetween(piece.pose.rotation, pose.rotation),
-                          piece.in.spin));
+        return clamped(moves ? share(pose.translation - piece.pose.translation, piece.in.velocity)
+                             : share(rotationVectorBetween(piece.pose.rotation, pose.rotation),
+                                     piece.in.spin));
     }
     return clamped(nearestInCorner(piece, pose.translation));
 }
@@ -302,7 +300,7 @@ double ToolPath::nearest(const Pose& pose) const noexcept {
                 continue;
             }
             const double s = nearestOn(piece, pose);
-            const double off = motion::distanceBetween(at(s), pose);
+            const double off = distanceBetween(at(s), pose);
             if (least < 0 || off < least) {
                 least = off;
                 best = s;
@@ -318,7 +316,7 @@ double ToolPath::nearestPossible(const Piece& piece, const Pose& pose) noexcept 
     }
     const double reach =
         0.5 * piece.length * std::max(piece.in.velocity.norm(), piece.out.velocity.norm());
-    return motion::distanceBetween(piece.pose, pose) - reach;
+    return distanceBetween(piece.pose, pose) - reach;
 }
 
 }  // namespace metier::motion

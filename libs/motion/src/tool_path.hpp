@@ -24,18 +24,17 @@ class ToolPath {
 public:
     ToolPath() = default;
     /// One line.
-    ToolPath(const motion::Pose& start, const motion::Pose& target);
+    ToolPath(const Pose& start, const Pose& target);
 
     /// Goes on in a line to `target`, rounding the corner where it leaves the last one.
     /// \param blend_radius > 0 [m]; no more than blendLimit() is used
-    void append(const motion::Pose& target, double blend_radius);
+    void append(const Pose& target, double blend_radius);
     /// Largest blend radius of a corner from which a line leads to `target` [m]: half of the
     /// shorter line, where a turn counts for 0.25 m/rad. Infinite where nothing but the rotation
     /// changes, or the line before has no length.
-    double blendLimit(const motion::Pose& target) const noexcept;
+    double blendLimit(const Pose& target) const noexcept;
 
     bool isPoint() const noexcept { return length_ == 0; }
-    bool isLine() const noexcept { return pieces_.size() == 1; }
     /// Sum of all lines [m] and of all rotations [rad].
     double distance() const noexcept { return distance_; }
     double angle() const noexcept { return angle_; }
@@ -44,14 +43,14 @@ public:
     /// as many as are usual, > 0
     std::vector<double> places(double density) const;
 
-    motion::Pose at(double s) const noexcept;
+    Pose at(double s) const noexcept;
     ToolDerivatives translationAt(double s) const noexcept;
     ToolDerivatives rotationAt(double s) const noexcept;
     /// Line (0: the first) to which a place belongs. The first half of a corner belongs to the line
     /// before it, the second half to the line after it.
     std::size_t lineAt(double s) const noexcept;
     /// The path parameter where the path is nearest.
-    double nearest(const motion::Pose& pose) const noexcept;
+    double nearest(const Pose& pose) const noexcept;
 
     /// Translation and rotation vector of the only line, from start to end.
     Eigen::Vector3d direction() const noexcept { return length_ * pieces_.front().in.velocity; }
@@ -66,8 +65,8 @@ private:
     struct Piece {
         double begin = 0;
         double length = 0;
-        double whole = 0;   ///< length of a line with what its corners have taken
-        motion::Pose pose;  ///< pose at the begin of a line, or at the point of a corner
+        double whole = 0;  ///< length of a line with what its corners have taken
+        Pose pose;         ///< pose at the begin of a line, or at the point of a corner
         Motion in;
         Motion out;  ///< motion at the end of a corner
         bool corner = false;
@@ -79,19 +78,19 @@ private:
     void addPlaces(std::size_t piece, double density, std::vector<double>& places) const;
     static double longestStep(const Piece& piece) noexcept;
     static double cornerStep(const Piece& piece) noexcept;
-    static Piece lineBetween(const motion::Pose& start, const motion::Pose& target);
-    void appendLine(const motion::Pose& start, const motion::Pose& target);
+    static Piece lineBetween(const Pose& start, const Pose& target);
+    void appendLine(const Pose& start, const Pose& target);
     /// Ways along both lines of a corner, from its point: the first one's is negative [m].
     static double wayIn(const Piece& corner, double along) noexcept;
     static double wayOut(const Piece& corner, double along) noexcept;
     static Eigen::Vector3d translationIn(const Piece& corner, double along) noexcept;
     static double nearestInCorner(const Piece& piece, const Eigen::Vector3d& point) noexcept;
-    double nearestOn(const Piece& piece, const motion::Pose& pose) const noexcept;
+    double nearestOn(const Piece& piece, const Pose& pose) const noexcept;
     /// No place of the piece is nearer than that [m].
-    static double nearestPossible(const Piece& piece, const motion::Pose& pose) noexcept;
+    static double nearestPossible(const Piece& piece, const Pose& pose) noexcept;
 
     std::vector<Piece> pieces_;
-    motion::Pose end_;
+    Pose end_;
     double length_ = 0;
     double distance_ = 0;
     double angle_ = 0;

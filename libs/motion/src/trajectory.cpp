@@ -11,27 +11,29 @@ namespace metier::motion {
 
 namespace {
 
-PathDeviation deviationAt(const motion::Pose& planned, const motion::Pose& pose, double s) {
-    return {motion::distanceBetween(planned, pose),
-            motion::rotationAngleBetween(planned.rotation, pose.rotation), s};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+PathDeviation deviationAt(const Pose& planned, const Pose& pose, double s) {
+    return {distanceBetween(planned, pose), rotationAngleBetween(planned.rotation, pose.rotation),
+            s};
 }
 
 }  // namespace
 
 Seconds Trajectory::duration() const noexcept {
-    return Seconds(plan_->speed().profile.duration());
+    return Seconds(plan_->speed.profile.duration());
 }
 
 std::size_t Trajectory::axisCount() const noexcept {
-    return plan_->kinematics().axisCount();
+    return plan_->kinematics.axisCount();
 }
 
 SetPoint Trajectory::sample(Seconds time) const noexcept {
-    return sampleAt(plan_->speed().profile.at(time.count()));
+    return sampleAt(plan_->speed.profile.at(time.count()));
 }
 
 ScalarState Trajectory::pathParameter(const ScalarState& clock) const noexcept {
-    const SpeedMap& map = plan_->speed().map;
+    const SpeedMap& map = plan_->speed.map;
     if (clock.position >= map.end()) {
         return {1.0, 0.0, 0.0};
     }
@@ -41,7 +43,7 @@ ScalarState Trajectory::pathParameter(const ScalarState& clock) const noexcept {
 }
 
 ScalarState Trajectory::clockAt(const ScalarState& path) const noexcept {
-    const SpeedMap& map = plan_->speed().map;
+    const SpeedMap& map = plan_->speed.map;
     if (path.position >= 1.0) {
         return {map.end(), 0.0, 0.0};
     }
@@ -53,7 +55,7 @@ ScalarState Trajectory::clockAt(const ScalarState& path) const noexcept {
 }
 
 Profile Trajectory::brake(const ScalarState& path, double factor) const noexcept {
-    return plan_->braking().brake(path, factor, kInfinity);
+    return plan_->braking.brake(path, factor, kInfinity);
 }
 
 SetPoint Trajectory::sampleAt(const ScalarState& clock) const noexcept {
@@ -81,17 +83,17 @@ JointVector Trajectory::positionAt(double fraction) const noexcept {
     return plan_->pathAt(std::clamp(fraction, 0.0, 1.0)).q;
 }
 
-motion::Pose Trajectory::toolPose(const JointVector& q) const noexcept {
-    return plan_->kinematics().forward(q) * plan_->flangeFromTool();
+Pose Trajectory::toolPose(const JointVector& q) const noexcept {
+    return plan_->kinematics.forward(q) * plan_->flange_from_tool;
 }
 
-motion::Pose Trajectory::poseAt(double fraction) const noexcept {
+Pose Trajectory::poseAt(double fraction) const noexcept {
     const ToolPath* path = plan_->toolPath();
     const double s = std::clamp(fraction, 0.0, 1.0);
     return path != nullptr ? path->at(s) : toolPose(plan_->pathAt(s).q);
 }
 
-PathDeviation Trajectory::deviation(const motion::Pose& base_from_tool) const noexcept {
+PathDeviation Trajectory::deviation(const Pose& base_from_tool) const noexcept {
     if (const ToolPath* path = plan_->toolPath()) {
         const double s = path->nearest(base_from_tool);
         return deviationAt(path->at(s), base_from_tool, s);
@@ -116,23 +118,23 @@ PathDeviation Trajectory::deviation(const motion::Pose& base_from_tool) const no
 }
 
 double Trajectory::clockSpeed() const noexcept {
-    return plan_->speed().velocity;
+    return plan_->speed.velocity;
 }
 
 Profile Trajectory::brakeClock(const ScalarState& clock, double factor) const noexcept {
-    return plan_->speed().clock.brake(clock, factor, clockEnd());
+    return plan_->speed.clock.brake(clock, factor, clockEnd());
 }
 
 Profile Trajectory::runClock(const ScalarState& clock, double speed_override) const noexcept {
-    return plan_->speed().clock.toRest(clock, clockEnd(), speed_override * clockSpeed());
+    return plan_->speed.clock.toRest(clock, clockEnd(), speed_override * clockSpeed());
 }
 
 double Trajectory::clockEnd() const noexcept {
-    return plan_->speed().map.end();
+    return plan_->speed.map.end();
 }
 
 const Profile& Trajectory::profile() const noexcept {
-    return plan_->speed().profile;
+    return plan_->speed.profile;
 }
 
 double Trajectory::length() const noexcept {
@@ -146,11 +148,13 @@ double Trajectory::angle() const noexcept {
 }
 
 Trajectory Trajectory::stretchedTo(Seconds duration) const {
-    const double now = plan_->speed().profile.duration();
+    const double now = plan_->speed.profile.duration();
     if (duration.count() <= now || now <= 0) {
         return *this;
     }
-    return Trajectory(std::make_shared<const Plan>(plan_->slowed(duration.count() / now)));
+    auto slow = std::make_shared<Plan>(*plan_);
+    slow->speed = plan_->speed.slowed(duration.count() / now);
+    return Trajectory(std::move(slow));
 }
 
 }  // namespace metier::motion

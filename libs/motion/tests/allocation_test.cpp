@@ -22,7 +22,7 @@ TEST_P(AllocationOf, ASampledMotionDoesNotAllocate) {
     request.start = model_.home();
     request.reference = TargetReference::relative_base;
     request.target.translation = {0, 0, 0.1};
-    MotionRun execution(planLin(model_, request).value());
+    MotionRun execution(Planner(model_).lin(request).value());
     const std::size_t before = allocationCount();
     for (int i = 0; i < 2000; ++i) {
         if (i == 100) {

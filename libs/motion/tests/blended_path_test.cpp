@@ -134,9 +134,9 @@ TEST_P(BlendedPathOf, OfOneWaypointIsALine) {
 TEST(BlendedPath, RunsASlowerLegSlower) {
     const RobotModel model = loadRobot("iiwa7");
     PathRequest request = roundedSquare(model);
-    const Seconds quick = planPath(model, request).value().duration();
+    const Seconds quick = Planner(model).path(request).value().duration();
     request.waypoints[1].max_velocity = 0.05;
-    EXPECT_GT(planPath(model, request).value().duration(), quick + Seconds(0.5));
+    EXPECT_GT(Planner(model).path(request).value().duration(), quick + Seconds(0.5));
 }
 
 TEST(BlendedPath, RefusesAWaypointWithoutABlendRadius) {
@@ -247,23 +247,6 @@ TEST_P(BlendedPathOf, FindsEachOfItsPlacesAgain) {
     for (int i = 0; i <= 100; ++i) {
         ASSERT_LT(plan->deviation(plan->poseAt(i / 100.0)).distance, 1e-6) << i;
     }
-}
-
-TEST(Synchronise, GivesEveryMotionTheDurationOfTheSlowest) {
-    std::vector<Trajectory> motions;
-    for (const std::string robot : {"ur5", "edo"}) {
-        const RobotModel model = loadRobot(robot);
-        JointVector target = model.home();
-        target[0] += 0.5;
-        PtpRequest request;
-        request.start = model.home();
-        request.target = target;
-        motions.push_back(planPtp(model, request).value());
-    }
-    const Seconds slowest = std::max(motions[0].duration(), motions[1].duration());
-    synchronise(motions);
-    EXPECT_NEAR(motions[0].duration().count(), slowest.count(), 1e-9);
-    EXPECT_NEAR(motions[1].duration().count(), slowest.count(), 1e-9);
 }
 
 TEST(BlendedPath, TheNearestPlaceOfOneOfItsOwnPosesIsThere) {

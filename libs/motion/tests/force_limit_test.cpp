@@ -107,10 +107,8 @@ TEST(ForceLimit, DampsAVibrationOf20HzAndMoreButNotASlowPush) {
 }
 
 TEST(ForceLimit, TripsAtOnceIfTheFirstWrenchIsBeyondTheLimitAlready) {
-    ForceLimit limit = limitOf({kLimit, 0, {}});
-    EXPECT_TRUE(limit.check(along(0, 60)));
-    limit.restart();
-    EXPECT_FALSE(limit.check(along(0, 40)));
+    EXPECT_TRUE(limitOf({kLimit, 0, {}}).check(along(0, 60)));
+    EXPECT_FALSE(limitOf({kLimit, 0, {}}).check(along(0, 40)));
 }
 
 TEST(ForceLimit, TakesAValueThatIsNotFiniteForAnExcess) {
@@ -154,7 +152,7 @@ TEST(ForceLimit, StopsALineAtAWallWithinTheBrakingDistanceOfTwiceTheLimits) {
         request.target.translation = {0, 0, -0.15};
         request.max_velocity = {speed, speed, speed, 1, 1, 1};
         request.max_acceleration = {acceleration, acceleration, acceleration, 2, 2, 2};
-        const Trajectory trajectory = planLin(model, request).value();
+        const Trajectory trajectory = Planner(model).lin(request).value();
         const double surface = trajectory.poseAt(0).translation.z() - 0.06;
 
         MotionRun execution(trajectory);

@@ -19,7 +19,7 @@ Trajectory lineOf(const RobotModel& model, double length) {
     request.target.translation = {0, 0, length};
     request.max_velocity = {0.25, 0.25, 0.25, 1, 1, 1};
     request.max_acceleration = {1.2, 1.2, 1.2, 2, 2, 2};
-    return planLin(model, request).value();
+    return Planner(model).lin(request).value();
 }
 
 using ExecutionOf = EachRobot;

@@ -356,7 +356,7 @@ TEST_P(StoppingOf, ASlowPtpStandsAfterMilliseconds) {
     JointVector target = model_.home();
     target[0] += 1.0;
     request.target = target;
-    const Trajectory plan = planPtp(model_, request).value().stretchedTo(Seconds(60));
+    const Trajectory plan = Planner(model_).ptp(request).value().stretchedTo(Seconds(60));
     MotionRun execution(plan);
     execution.next(Seconds(30));
     EXPECT_GT(execution.stoppingEstimate().time, Seconds(0));

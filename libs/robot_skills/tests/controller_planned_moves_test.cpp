@@ -225,7 +225,7 @@ Result<ControllerPlannedMotion> askedFor(const motion::RobotModel& model, const 
     request.target = motion::toPose(relative);
     request.reference = motion::TargetReference::relative_tool;
     request.tool_frame = "pen";
-    return controllerPlannedMotion({model, motion::planLin(model, request).value(),
+    return controllerPlannedMotion({model, motion::Planner(model).lin(request).value(),
                                     PathDeviationMeter::Path::cartesian_line, MoveParameters{}});
 }
 

@@ -135,7 +135,7 @@ private:
                                         0,
                                         0,
                                         0};
-            return motion::planLin(model_, request).value();
+            return motion::Planner(model_).lin(request).value();
         }
         motion::PtpRequest request;
         request.start = start;
@@ -149,7 +149,7 @@ private:
             request.max_velocity[axis] = motion.velocity_share * limits.velocity;
             request.max_acceleration[axis] = motion.acceleration_share * limits.acceleration;
         }
-        return motion::planPtp(model_, request).value();
+        return motion::Planner(model_).ptp(request).value();
     }
 
     joint_simulator::JointSimulator& arm_;

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "metier/motion/twist.hpp"
+#include "metier/motion/wrench.hpp"
 #include "rdt.hpp"
 
 namespace metier::virtual_netft {

@@ -111,9 +111,7 @@ bool same(const JointVector& a, const JointVector& b) {
 std::vector<Solution> solve(const IkQuestion& question) {
     const auto& arm = question.model.kinematics();
     const auto target = question.flange();
-    const auto found = question.arm_angle
-                           ? arm.allSolutions(target, question.reference, *question.arm_angle)
-                           : arm.allSolutions(target, question.reference);
+    const auto found = arm.allSolutions(target, question.reference, question.arm_angle);
     std::vector<Solution> solutions;
     for (const auto& joints : found) {
         const bool known =

@@ -23,7 +23,7 @@ struct JointLimits {
 struct JointDescription {
     std::string name;
     /// Joint frame in the frame of the joint before (of the base for axis 1), at joint position 0.
-    motion::Pose parent_from_joint;
+    Pose parent_from_joint;
     /// Turning axis in the joint frame; a unit vector.
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
     JointLimits limits;
@@ -42,7 +42,7 @@ struct CartesianLimits {
 /// A named frame on the flange, with the mass of the tool for the driver.
 struct ToolFrame {
     std::string name;
-    motion::Pose flange_from_tool;
+    Pose flange_from_tool;
     double mass = 0;                                           ///< [kg]
     Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< in the flange frame [m]
 };
@@ -50,7 +50,7 @@ struct ToolFrame {
 /// Description of a robot that a server publishes and a client reads: enough to plan motions.
 struct ChainDescription {
     std::vector<JointDescription> joints;  ///< 1 to kMaxAxes
-    motion::Pose last_from_flange;         ///< flange in the last joint's frame
+    Pose last_from_flange;                 ///< flange in the last joint's frame
     CartesianLimits cartesian_limits;
     JointVector home;              ///< a usable, non-singular working position [rad]
     std::vector<ToolFrame> tools;  ///< in addition to "flange", which always exists

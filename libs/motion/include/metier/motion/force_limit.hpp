@@ -6,7 +6,7 @@
 
 #include "metier/base/error.hpp"
 #include "metier/motion/trajectory.hpp"
-#include "metier/motion/twist.hpp"
+#include "metier/motion/wrench.hpp"
 
 namespace metier::motion {
 
@@ -46,12 +46,10 @@ public:
 
     /// Takes the wrench of this cycle.
     /// \return the first limit found that it exceeds; nothing if there is none
-    std::optional<ForceExcess> check(const motion::Wrench& measured) noexcept;
+    std::optional<ForceExcess> check(const Wrench& measured) noexcept;
 
     /// Wrench after the low-pass.
-    const motion::Wrench& filtered() const noexcept { return filtered_; }
-    /// Forgets the past: the next check() starts the low-pass again.
-    void restart() noexcept { started_ = false; }
+    const Wrench& filtered() const noexcept { return filtered_; }
 
 private:
     ForceLimit(const WrenchLimits& limits, double gain) noexcept : limits_(limits), gain_(gain) {}
@@ -59,7 +57,7 @@ private:
     WrenchLimits limits_;
     double gain_;
     bool started_ = false;
-    motion::Wrench filtered_;
+    Wrench filtered_;
 };
 
 }  // namespace metier::motion

@@ -5,8 +5,6 @@
 
 namespace metier::motion {
 
-using metier::Frame;
-
 /// Converts a 3DFrame to a pose; the angles may have any finite value.
 Pose toPose(const Frame& frame);
 

@@ -76,9 +76,6 @@ enum class IkKind {
     arm_angle,            ///< spherical shoulder and wrist (iiwa): up to 8 per arm angle
     numeric,              ///< any other chain: Levenberg-Marquardt, one solution
 };
-/// The enumerator's name, for logs.
-std::string_view toString(IkKind kind) noexcept;
-
 /// A rigid transform as matrix and vector, for fast computation. Translation in [m].
 struct Transform {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
@@ -122,15 +119,15 @@ public:
     /// Reason why no joint position at all reaches this pose; nothing if it is in reach, or if only
     /// trying can show it.
     /// \param reference as for allSolutions()
-    std::optional<ReachMiss> outOfReach(const motion::Pose& base_from_flange,
+    std::optional<ReachMiss> outOfReach(const Pose& base_from_flange,
                                         const JointVector& reference) const noexcept;
 
     /// Computes base_from_flange.
     /// \param q [rad], size axisCount(), finite; limits are not checked
-    motion::Pose forward(const JointVector& q) const noexcept;
+    Pose forward(const JointVector& q) const noexcept;
     /// Computes base_from_joint for every axis (the turned joint frames of the chain), and after
     /// these base_from_flange.
-    std::array<motion::Pose, kMaxAxes + 1> forwardAll(const JointVector& q) const noexcept;
+    std::array<Pose, kMaxAxes + 1> forwardAll(const JointVector& q) const noexcept;
     /// Jacobian of the flange at a joint position.
     Jacobian jacobian(const JointVector& q) const noexcept;
     /// Computes base_from_flange and the Jacobian together, as fast as one of them.
@@ -143,15 +140,14 @@ public:
     /// the solutions with the arm angle of `reference`, or with `redundancy_angle`. For a numeric
     /// chain: the one solution found from `reference`.
     /// \param reference gives the value of an axis that the pose leaves free [rad]
-    JointSolutions allSolutions(const motion::Pose& base_from_flange,
-                                const JointVector& reference) const noexcept;
-    JointSolutions allSolutions(const motion::Pose& base_from_flange, const JointVector& reference,
-                                double redundancy_angle) const noexcept;
+    JointSolutions allSolutions(
+        const Pose& base_from_flange, const JointVector& reference,
+        const std::optional<double>& redundancy_angle = std::nullopt) const noexcept;
 
     /// The solution that follows `guess` without a jump, whole turns included; empty if there is
     /// none. Limits are not applied.
     /// \param guess an extrapolated position [rad]
-    JointVector solutionNear(const motion::Pose& base_from_flange, const JointVector& guess,
+    JointVector solutionNear(const Pose& base_from_flange, const JointVector& guess,
                              double redundancy_angle) const noexcept;
 
     /// The solution within limits and bounds that is nearest to the reference. The distance is the
@@ -159,12 +155,11 @@ public:
     /// the first wins.
     /// Errors: unreachable (distance and reach, or the axis, its value and limit),
     ///         invalid_argument (sizes, not finite).
-    Result<JointVector> inverse(const motion::Pose& base_from_flange,
-                                const IkRequest& request) const;
+    Result<JointVector> inverse(const Pose& base_from_flange, const IkRequest& request) const;
 
     /// The same by Levenberg-Marquardt, from the reference and then from other fixed seeds: for
     /// chains without a closed form. Returns the first solution found, not the nearest.
-    Result<JointVector> inverseNumerically(const motion::Pose& base_from_flange,
+    Result<JointVector> inverseNumerically(const Pose& base_from_flange,
                                            const IkRequest& request) const;
 
     /// Arm angle [rad]: angle of the elbow about the line from shoulder to wrist. It is 0 if the
@@ -174,7 +169,7 @@ public:
 
     /// Levenberg-Marquardt from `seed`, with at most `max_iterations`; limits are not applied.
     /// inverse() falls back to it, and uses it to refine solutions of a calibrated chain.
-    std::optional<JointVector> solveNumerically(const motion::Pose& base_from_flange,
+    std::optional<JointVector> solveNumerically(const Pose& base_from_flange,
                                                 const JointVector& seed,
                                                 int max_iterations) const noexcept;
 
@@ -182,11 +177,10 @@ public:
     bool withinLimits(const JointVector& q) const noexcept;
 
 private:
-    Result<JointVector> search(const motion::Pose& base_from_flange, const IkRequest& request,
+    Result<JointVector> search(const Pose& base_from_flange, const IkRequest& request,
                                IkKind method) const;
-    JointSolutions closedForm(const motion::Pose& base_from_flange, const JointVector& reference,
+    JointSolutions closedForm(const Pose& base_from_flange, const JointVector& reference,
                               double redundancy_angle) const noexcept;
-    bool refine(const motion::Pose& base_from_flange, JointVector& solution) const noexcept;
     Eigen::Vector3d reachCentre(const JointVector& q) const noexcept;
     bool polish(const Transform& target, JointVector& solution) const noexcept;
 

@@ -25,8 +25,8 @@ enum class TargetReference {
 
 /// A motion straight in joint space.
 struct PtpRequest {
-    JointVector start;                               ///< position at which the arm is at rest [rad]
-    std::variant<JointVector, motion::Pose> target;  ///< joint position, or pose of the tool frame
+    JointVector start;                       ///< position at which the arm is at rest [rad]
+    std::variant<JointVector, Pose> target;  ///< joint position, or pose of the tool frame
     TargetReference reference = TargetReference::base;  ///< frame of a target pose; not used for a
                                                         ///< joint position
     std::string tool_frame;                             ///< name of the tool frame; "": the flange
@@ -44,8 +44,8 @@ using CartesianVector = std::array<double, 6>;
 
 /// A motion whose tool frame moves along a straight line and turns the short way meanwhile.
 struct LinRequest {
-    JointVector start;    ///< position at which the arm is at rest [rad]
-    motion::Pose target;  ///< pose of the tool frame
+    JointVector start;  ///< position at which the arm is at rest [rad]
+    Pose target;        ///< pose of the tool frame
     TargetReference reference = TargetReference::base;
     std::string tool_frame;
     /// Limits of the tool frame, > 0 [m/s], [rad/s] and [m/s2], [rad/s2]. 0: the robot's own limit,
@@ -66,7 +66,7 @@ struct JointLinearRequest {
 
 /// A place on a path of several lines.
 struct PathWaypoint {
-    motion::Pose target;  ///< pose of the tool frame
+    Pose target;  ///< pose of the tool frame
     /// Distance by which the corner here may be cut [m]: 1e-9 m or more, at most half of the
     /// shorter line beside it, where a rotation counts as 0.25 m/rad. Not used for the last
     /// waypoint.
@@ -146,15 +146,6 @@ private:
     const RobotModel* model_;
     PlannerOptions options_;
 };
-
-/// The same planners for callers that need an Error only, with the default options.
-Result<Trajectory> planPtp(const RobotModel& model, const PtpRequest& request);
-Result<Trajectory> planLin(const RobotModel& model, const LinRequest& request);
-Result<Trajectory> planJointLinear(const RobotModel& model, const JointLinearRequest& request);
-Result<Trajectory> planPath(const RobotModel& model, const PathRequest& request);
-
-/// Stretches the quicker motions to the duration of the slowest one.
-void synchronise(std::vector<Trajectory>& trajectories);
 
 /// Answer to the question whether a motion could start.
 struct Feasibility {

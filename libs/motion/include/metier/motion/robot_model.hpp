@@ -38,6 +38,15 @@ struct VisualPrimitive {
                                     ///< chooses
 };
 
+/// Names and shape of a kind of robot.
+struct RobotAppearance {
+    std::string name;     ///< such as "ur5"
+    std::string maker;    ///< such as "Universal Robots"
+    std::string product;  ///< such as "UR5"
+    std::vector<Capsule> capsules;
+    std::vector<VisualPrimitive> visual;
+};
+
 /// Everything known about a kind of robot: kinematics, limits, tool frames, shape, names.
 ///
 /// Threading: immutable, any thread.
@@ -57,9 +66,9 @@ public:
     /// controller; names and shape stay. Errors: as fromChain().
     Result<RobotModel> withChain(ChainDescription chain) const;
 
-    std::string_view name() const noexcept { return name_; }        ///< such as "ur5"
-    std::string_view maker() const noexcept { return maker_; }      ///< such as "Universal Robots"
-    std::string_view product() const noexcept { return product_; }  ///< such as "UR5"
+    std::string_view name() const noexcept { return appearance_.name; }
+    std::string_view maker() const noexcept { return appearance_.maker; }
+    std::string_view product() const noexcept { return appearance_.product; }
     std::size_t axisCount() const noexcept { return chain_.joints.size(); }
     const ChainDescription& chain() const noexcept { return chain_; }
     const Kinematics& kinematics() const noexcept { return kinematics_; }
@@ -70,8 +79,8 @@ public:
     const JointVector& home() const noexcept { return chain_.home; }
     /// Controller cycle [s].
     double cycleTime() const noexcept { return chain_.cycle_time; }
-    const std::vector<Capsule>& capsules() const noexcept { return capsules_; }
-    const std::vector<VisualPrimitive>& visual() const noexcept { return visual_; }
+    const std::vector<Capsule>& capsules() const noexcept { return appearance_.capsules; }
+    const std::vector<VisualPrimitive>& visual() const noexcept { return appearance_.visual; }
 
     /// Finds a tool frame by its name; "" and "flange" are the flange itself.
     /// Errors: not_found, with the known names.
@@ -81,13 +90,9 @@ private:
     explicit RobotModel(ChainDescription chain);
     static Result<RobotModel> read(const cell::TomlFile& toml, const std::string& file_name);
 
-    std::string name_;
-    std::string maker_;
-    std::string product_;
+    RobotAppearance appearance_;
     ChainDescription chain_;
     Kinematics kinematics_;
-    std::vector<Capsule> capsules_;
-    std::vector<VisualPrimitive> visual_;
 };
 
 }  // namespace metier::motion

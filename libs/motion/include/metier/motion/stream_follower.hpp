@@ -91,8 +91,6 @@ public:
     State state() const noexcept { return state_; }
     /// Reports whether the last set-point stands still: no axis has velocity or acceleration.
     bool atRest() const noexcept;
-    /// Number of set-points taken so far.
-    std::uint64_t acceptedCount() const noexcept { return accepted_; }
     /// Number of cycles for which no set-point was there in time; extrapolated cycles without delay
     /// do not count.
     std::uint64_t missedCycles() const noexcept { return missed_; }
@@ -156,7 +154,6 @@ private:
     };
     std::array<Brake, kMaxAxes> brakes_;
     int silent_cycles_ = 0;
-    std::uint64_t accepted_ = 0;
     std::uint64_t missed_ = 0;
 };
 

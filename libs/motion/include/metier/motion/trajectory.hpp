@@ -33,7 +33,7 @@ struct PathDeviation {
 /// Sampling does not allocate, lock or throw, and gives the same bits for the same time.
 class Trajectory {
 public:
-    class Plan;
+    struct Plan;
 
     explicit Trajectory(std::shared_ptr<const Plan> plan) noexcept : plan_(std::move(plan)) {}
 
@@ -64,14 +64,14 @@ public:
     /// Planned joint position at a path parameter in [0, 1].
     JointVector positionAt(double fraction) const noexcept;
     /// Planned base_from_tool at a path parameter in [0, 1].
-    motion::Pose poseAt(double fraction) const noexcept;
+    Pose poseAt(double fraction) const noexcept;
     /// Planned base_from_tool at the end.
-    motion::Pose endPose() const noexcept { return poseAt(1.0); }
+    Pose endPose() const noexcept { return poseAt(1.0); }
     /// base_from_tool of any joint position, with this motion's tool frame.
-    motion::Pose toolPose(const JointVector& q) const noexcept;
+    Pose toolPose(const JointVector& q) const noexcept;
     /// Deviation of a pose, for example a measured one, from the path. Not for the cycle thread on
     /// PTP paths.
-    PathDeviation deviation(const motion::Pose& base_from_tool) const noexcept;
+    PathDeviation deviation(const Pose& base_from_tool) const noexcept;
 
     /// Speed of the clock that runs from 0 to clockEnd(): 1 unless the motion was stretched, no
     /// unit.

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "metier/motion/pose.hpp"
-#include "metier/motion/twist.hpp"
+#include "metier/motion/wrench.hpp"
 
 namespace metier::virtual_controller {
 
