@@ -1,5 +1,7 @@
 #include "metier/device/arm.hpp"
 
+#include <fmt/format.h>
+
 namespace metier::device {
 
 std::string_view toString(SafetyState state) noexcept {
@@ -16,6 +18,13 @@ std::string_view toString(SafetyState state) noexcept {
             return "disconnected";
     }
     return "unknown";
+}
+
+Result<void> checkNormal(const Safety& safety) {
+    if (safety.state == SafetyState::normal) {
+        return {};
+    }
+    return fail(Errc::device_fault, fmt::format("{} ({})", safety.text, toString(safety.state)));
 }
 
 }  // namespace metier::device

@@ -1,7 +1,5 @@
 #include "metier/device/arm_core.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 namespace metier::device {
@@ -25,9 +23,7 @@ ArmCore::~ArmCore() {
 
 Result<void> ArmCore::attach(std::shared_ptr<SetPointSource> source) {
     const std::lock_guard lock(mutex_);
-    if (const auto now = safety(); now.state != SafetyState::normal) {
-        return fail(Errc::device_fault, fmt::format("{} ({})", now.text, toString(now.state)));
-    }
+    METIER_TRY(checkNormal(safety()));
     if (owner_) {
         return fail(Errc::resource_unavailable, info_.name + ": another source moves the arm");
     }

@@ -8,11 +8,7 @@
 
 namespace metier::joint_simulator {
 
-namespace {
-
 using Quantity = Violation::Quantity;
-
-}  // namespace
 
 std::string toText(const Violation& violation) {
     const auto axis = violation.axis + 1;

@@ -109,10 +109,7 @@ device::Safety JointSimulator::safety() const {
 }
 
 Result<void> JointSimulator::attach(std::shared_ptr<device::SetPointSource> source) {
-    if (const auto now = safety(); now.state != SafetyState::normal) {
-        return fail(Errc::device_fault,
-                    fmt::format("{} ({})", now.text, device::toString(now.state)));
-    }
+    METIER_TRY(device::checkNormal(safety()));
     const std::lock_guard lock(mutex_);
     if (owner_) {
         return fail(Errc::resource_unavailable, info_.name + ": another source moves the arm");
@@ -145,16 +142,6 @@ Result<void> JointSimulator::resetFault() {
     return {};
 }
 
-device::Registration JointSimulator::onSafetyChange(SafetyCallback callback) {
-    const std::lock_guard lock(mutex_);
-    const auto id = next_callback_++;
-    callbacks_.emplace_back(id, std::move(callback));
-    return device::Registration([this, id] {
-        const std::lock_guard inner(mutex_);
-        std::erase_if(callbacks_, [id](const auto& entry) { return entry.first == id; });
-    });
-}
-
 void JointSimulator::protectiveStop(std::string text) {
     {
         const std::lock_guard lock(mutex_);
@@ -180,26 +167,9 @@ void JointSimulator::moveByHand(const device::JointArray& position) noexcept {
 }
 
 void JointSimulator::dispatch() {
-    tellSafety();
+    reported_.set(safety());
+    reported_.dispatch();
     tellEnd();
-}
-
-void JointSimulator::tellSafety() {
-    const auto now = safety();
-    std::vector<SafetyCallback> callbacks;
-    {
-        const std::lock_guard lock(mutex_);
-        if (now.state == published_safety_) {
-            return;
-        }
-        published_safety_ = now.state;
-        for (const auto& [id, callback] : callbacks_) {
-            callbacks.push_back(callback);
-        }
-    }
-    for (const auto& callback : callbacks) {
-        callback(now);
-    }
 }
 
 void JointSimulator::tellEnd() {

@@ -4,13 +4,8 @@
 
 namespace metier::joint_simulator {
 
-namespace {
-
-constexpr double kDriveReserve = 2.0;
-
-}  // namespace
-
 JointSimulatorOptions optionsFor(const motion::RobotModel& model) {
+    constexpr double drive_reserve = 2.0;
     JointSimulatorOptions options;
     options.name = model.name();
     options.cycle = std::chrono::round<std::chrono::nanoseconds>(
@@ -19,7 +14,7 @@ JointSimulatorOptions optionsFor(const motion::RobotModel& model) {
     for (const auto& joint : model.chain().joints) {
         options.axis_names.push_back(joint.name);
         options.limits.push_back({joint.limits.lower, joint.limits.upper, joint.limits.velocity,
-                                  kDriveReserve * joint.limits.acceleration});
+                                  drive_reserve * joint.limits.acceleration});
     }
     return options;
 }

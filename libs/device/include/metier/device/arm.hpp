@@ -36,6 +36,9 @@ struct Safety {
     bool limit_violated = false;  ///< the reason is a set-point beyond a limit of the controller
 };
 
+/// Errors: device_fault with text and state, unless the state is normal.
+Result<void> checkNormal(const Safety& safety);
+
 /// Properties of an arm that do not change while it is connected.
 struct ArmInfo {
     std::string name;

@@ -26,7 +26,6 @@ struct WrenchSample {
 /// allocates, so a cycle thread may call it.
 class ForceTorqueSensor {
 public:
-    using SampleCallback = std::function<void(const WrenchSample&)>;
     using SafetyCallback = std::function<void(const Safety&)>;
 
     virtual ~ForceTorqueSensor() = default;

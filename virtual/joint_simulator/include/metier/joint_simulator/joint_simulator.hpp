@@ -8,6 +8,7 @@
 
 #include "metier/base/latest_value.hpp"
 #include "metier/device/arm.hpp"
+#include "metier/device/safety_publisher.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/joint_simulator/guard.hpp"
 #include "metier/joint_simulator/lag.hpp"
@@ -59,7 +60,9 @@ public:
     Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
     void stop() noexcept override;
     Result<void> resetFault() override;
-    device::Registration onSafetyChange(SafetyCallback callback) override;
+    device::Registration onSafetyChange(SafetyCallback callback) override {
+        return reported_.onChange(std::move(callback));
+    }
 
     /// One period of the controller. Neither locks, allocates, logs nor throws.
     /// \param scheduled begin of the cycle by the TimeBase
@@ -108,7 +111,6 @@ private:
     bool measuredStands() const noexcept;
     bool cameToRest() const noexcept;
     void publish(SteadyTime scheduled, std::uint64_t missed) noexcept;
-    void tellSafety();
     void tellEnd();
 
     const device::ArmInfo info_;
@@ -140,9 +142,7 @@ private:
     mutable std::mutex mutex_;
     std::shared_ptr<device::SetPointSource> owner_;  // shared with the caller of attach()
     std::string external_text_;
-    std::vector<std::pair<std::uint64_t, SafetyCallback>> callbacks_;
-    std::uint64_t next_callback_ = 1;
-    device::SafetyState published_safety_ = device::SafetyState::normal;
+    device::SafetyPublisher reported_{device::Safety{}};  ///< as of the last dispatch()
     std::uint64_t steps_ = 0;
 };
 

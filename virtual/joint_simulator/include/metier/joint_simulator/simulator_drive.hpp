@@ -8,7 +8,8 @@
 
 namespace metier::joint_simulator {
 
-/// Cycle thread and notifying thread of a simulated arm; runs it at its real rate.
+/// Cycle thread and notifying thread of a simulated arm; runs it at its real rate. Its destructor
+/// ends both within one period; the arm keeps its last state.
 ///
 /// Threading: one thread creates and destroys it. It starts two threads of its own: one calls
 ///            cycle(), the other dispatch().
@@ -17,11 +18,6 @@ public:
     /// Begins at once. The arm must outlive the drive; no other code may call its cycle(),
     /// dispatch() or step() meanwhile.
     explicit SimulatorDrive(JointSimulator& arm);
-
-    /// Ends both threads within one period; the arm keeps its last state.
-    ~SimulatorDrive() = default;
-    SimulatorDrive(const SimulatorDrive&) = delete;
-    SimulatorDrive& operator=(const SimulatorDrive&) = delete;
 
 private:
     void run(const std::stop_token& stop);
