@@ -23,29 +23,15 @@ constexpr double kLongestRadius = 10.0;  // [m]
 constexpr double kHighestSpeed = 10.0;   // [m/s]
 
 /// Accepts all zero of any length, else exactly `count` values.
-Result<void> checkMaximum(const std::vector<double>& values, std::size_t count) {
-    const bool not_set = std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
-    if (not_set) {
-        return {};
-    }
-    if (values.size() != count) {
-        return fail(Errc::out_of_range,
-                    fmt::format("{} values, expected {} or all zero", values.size(), count));
-    }
-    return {};
-}
-
-Result<void> checkBounds(const std::vector<Range>& bounds, std::size_t axis_count) {
-    const bool not_set = std::all_of(bounds.begin(), bounds.end(),
-                                     [](const Range& r) { return r.low == 0 && r.high == 0; });
-    if (not_set) {
-        return {};
-    }
-    if (bounds.size() != axis_count) {
-        return fail(Errc::out_of_range,
-                    fmt::format("{} ranges, the arm has {} axes", bounds.size(), axis_count));
-    }
-    return {};
+/// \param error with places for the present and the right number of values
+template <typename Element>
+Result<void> checkCount(const Value& value, std::size_t count, std::string_view error) {
+    const auto& values = std::get<std::vector<Element>>(value);
+    const bool not_set = std::all_of(values.begin(), values.end(),
+                                     [](const Element& element) { return element == Element{}; });
+    return not_set || values.size() == count
+               ? Result<void>()
+               : fail(Errc::out_of_range, fmt::format(fmt::runtime(error), values.size(), count));
 }
 
 // Range of joint positions in the NodeSet [rad].
@@ -60,77 +46,75 @@ struct Maximum {
 
 Field maximumField(const Maximum& maximum, std::string description) {
     const auto& [name, count, highest, unit] = maximum;
-    Field field{.name = name, .description = std::move(description), .unit = unit};
-    field.range = Range{0.0, highest};
-    field.default_value = std::vector<double>(count, 0.0);
-    field.extra_check = [count = count](const Value& value) {
-        return checkMaximum(std::get<std::vector<double>>(value), count);
-    };
-    return field;
+    return {.name = name,
+            .description = std::move(description),
+            .unit = unit,
+            .range = Range{0.0, highest},
+            .default_value = std::vector<double>(count, 0.0),
+            .extra_check = [count = count](const Value& value) {
+                return checkCount<double>(value, count, "{} values, expected {} or all zero");
+            }};
 }
 
 Field toolFrameField(const motion::RobotModel& model) {
-    Field field{.name = "ToolFrame",
-                .description = "Name of the tool frame that is moved; empty: the flange"};
-    field.default_value = std::string();
-    field.extra_check = [&model](const Value& value) -> Result<void> {
-        METIER_TRY(model.tool(std::get<std::string>(value)));
-        return {};
-    };
-    return field;
+    return {.name = "ToolFrame",
+            .description = "Name of the tool frame that is moved; empty: the flange",
+            .default_value = std::string(),
+            .extra_check = [&model](const Value& value) -> Result<void> {
+                METIER_TRY(model.tool(std::get<std::string>(value)));
+                return {};
+            }};
 }
 
 Field relativeField(Relative last) {
-    Field field{.name = "Relative",
-                .description =
-                    "What the target is relative to: 0 absolute, 1 along the base axes "
-                    "or to the joint position, 2 along the axes of the tool frame"};
-    field.place = Place::options;
-    field.default_value = std::int32_t{0};
-    field.range = Range{0.0, static_cast<double>(last)};
-    return field;
+    return {.name = "Relative",
+            .description =
+                "What the target is relative to: 0 absolute, 1 along the base axes "
+                "or to the joint position, 2 along the axes of the tool frame",
+            .range = Range{0.0, static_cast<double>(last)},
+            .default_value = std::int32_t{0},
+            .place = Place::options};
 }
 
 Field blendRadiusField() {
-    Field field{.name = "BlendRadius",
-                .description = "Radius of the blend into the next move; only 0 so far",
-                .unit = skill::kMetre};
-    field.place = Place::options;
-    field.default_value = 0.0;
-    field.extra_check = [](const Value& value) -> Result<void> {
-        if (const double radius = std::get<double>(value); radius != 0.0) {
-            return fail(Errc::not_supported,
-                        fmt::format("{} m; a single move takes 0 m only", radius));
-        }
-        return {};
+    return {.name = "BlendRadius",
+            .description = "Radius of the blend into the next move; only 0 so far",
+            .unit = skill::kMetre,
+            .default_value = 0.0,
+            .place = Place::options,
+            .extra_check = [](const Value& value) -> Result<void> {
+                if (const double radius = std::get<double>(value); radius != 0.0) {
+                    return fail(Errc::not_supported,
+                                fmt::format("{} m; a single move takes 0 m only", radius));
+                }
+                return {};
+            }};
+}
+
+/// A check that a number is over 0.
+std::function<Result<void>(const Value&)> overZero(std::string error) {
+    return [error = std::move(error)](const Value& value) {
+        return std::get<double>(value) > 0.0 ? Result<void>() : fail(Errc::out_of_range, error);
     };
-    return field;
 }
 
 Field speedOverrideField() {
-    Field field{.name = "SpeedOverride",
-                .description = "Share of the planned speed, over 0 up to 1"};
-    field.place = Place::options;
-    field.default_value = 1.0;
-    field.range = Range{0.0, 1.0};
-    field.extra_check = [](const Value& value) -> Result<void> {
-        if (std::get<double>(value) <= 0.0) {
-            return fail(Errc::out_of_range, "0 would never arrive; over 0 up to 1");
-        }
-        return {};
-    };
-    return field;
+    return {.name = "SpeedOverride",
+            .description = "Share of the planned speed, over 0 up to 1",
+            .range = Range{0.0, 1.0},
+            .default_value = 1.0,
+            .place = Place::options,
+            .extra_check = overZero("0 would never arrive; over 0 up to 1")};
 }
 
 Field redundancyField() {
-    Field field{.name = "RedundancyAngle",
-                .description =
-                    "Angle of the elbow of a seven-axis arm at the target; "
-                    "not set: as at the start; other arms ignore it",
-                .unit = skill::kRadian};
-    field.place = Place::options;
-    field.range = Range{-std::numbers::pi, std::numbers::pi};
-    return field;
+    return {.name = "RedundancyAngle",
+            .description =
+                "Angle of the elbow of a seven-axis arm at the target; "
+                "not set: as at the start; other arms ignore it",
+            .unit = skill::kRadian,
+            .range = Range{-std::numbers::pi, std::numbers::pi},
+            .place = Place::options};
 }
 
 // Longer motions are rather a mistake of the unit.
@@ -140,66 +124,56 @@ constexpr double kLongestStop = 3.0;
 constexpr double kLatestTime = 1e11;  // beyond any clock, and so no range for a person
 
 Field durationField() {
-    Field field{.name = "Duration",
-                .description = "How long the motion takes; not set: as short as the limits allow",
-                .unit = skill::kSecond};
-    field.place = Place::options;
-    field.range = Range{0.0, kLongestDuration};
-    field.extra_check = [](const Value& value) -> Result<void> {
-        if (std::get<double>(value) <= 0.0) {
-            return fail(Errc::out_of_range, "0 s is no duration; leave it unset for the shortest");
-        }
-        return {};
-    };
-    return field;
+    return {.name = "Duration",
+            .description = "How long the motion takes; not set: as short as the limits allow",
+            .unit = skill::kSecond,
+            .range = Range{0.0, kLongestDuration},
+            .place = Place::options,
+            .extra_check = overZero("0 s is no duration; leave it unset for the shortest")};
 }
 
 Field startTimeField() {
-    Field field{.name = "StartTime",
-                .description =
-                    "When the motion begins, by the server's own clock, since "
-                    "1970-01-01 UTC; not set: at once",
-                .unit = skill::kSecond};
-    field.place = Place::options;
-    field.range = Range{0.0, kLatestTime};
-    return field;
+    return {.name = "StartTime",
+            .description =
+                "When the motion begins, by the server's own clock, since "
+                "1970-01-01 UTC; not set: at once",
+            .unit = skill::kSecond,
+            .range = Range{0.0, kLatestTime},
+            .place = Place::options};
 }
 
 Field stopTimeField() {
-    Field field{.name = "StopTime",
-                .description =
-                    "How long a Suspend brakes, at least, so that arms that move together stop "
-                    "together; not set: as short as this arm can",
-                .unit = skill::kSecond};
-    field.place = Place::options;
-    field.range = Range{0.0, kLongestStop};
-    return field;
+    return {.name = "StopTime",
+            .description =
+                "How long a Suspend brakes, at least, so that arms that move together stop "
+                "together; not set: as short as this arm can",
+            .unit = skill::kSecond,
+            .range = Range{0.0, kLongestStop},
+            .place = Place::options};
 }
 
 Field maxForceField() {
-    Field field{.name = "MaxForce",
-                .description =
-                    "Force along each axis of the base frame that ends the motion; 0: "
-                    "no limit along this axis",
-                .unit = skill::kNewton};
-    field.range = Range{0.0, 1000.0};
-    field.extra_check = [](const Value& value) -> Result<void> {
-        if (std::get<skill::Vector3>(value) == skill::Vector3{}) {
-            return fail(Errc::out_of_range, "no axis has a limit over 0 N");
-        }
-        return {};
-    };
-    return field;
+    return {.name = "MaxForce",
+            .description =
+                "Force along each axis of the base frame that ends the motion; 0: "
+                "no limit along this axis",
+            .unit = skill::kNewton,
+            .range = Range{0.0, 1000.0},
+            .extra_check = [](const Value& value) -> Result<void> {
+                if (std::get<skill::Vector3>(value) == skill::Vector3{}) {
+                    return fail(Errc::out_of_range, "no axis has a limit over 0 N");
+                }
+                return {};
+            }};
 }
 
 Field haltOnForceField() {
-    Field field{.name = "HaltOnForce",
-                .description =
-                    "Whether a force over its limit is an error: Halted, instead of "
-                    "finished with what was met"};
-    field.place = Place::options;
-    field.default_value = false;
-    return field;
+    return {.name = "HaltOnForce",
+            .description =
+                "Whether a force over its limit is an error: Halted, instead of "
+                "finished with what was met",
+            .default_value = false,
+            .place = Place::options};
 }
 
 template <typename Parameters>
@@ -241,7 +215,7 @@ void addCartesianFields(skill::FieldList<Parameters>& fields, const motion::Robo
               .unit = skill::kRadian,
               .default_value = std::vector<Range>(axes),
               .extra_check = [axes](const Value& value) {
-                  return checkBounds(std::get<std::vector<Range>>(value), axes);
+                  return checkCount<Range>(value, axes, "{} ranges, the arm has {} axes");
               }});
     addMoveFields(fields, model, kind);
     add(fields, &MoveParameters::relative, relativeField(Relative::tool));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "conversions.hpp"
@@ -92,6 +91,12 @@ motion::LinRequest commonLinRequest(const JointVector& start, const MoveParamete
     return commonRequest<motion::LinRequest>(start, parameters, cartesianMaxima);
 }
 
+tl::unexpected<motion::Refusal> outOfRange(std::string text) {
+    motion::Refusal refusal;
+    refusal.error = {Errc::out_of_range, std::move(text)};
+    return tl::unexpected(std::move(refusal));
+}
+
 /// The motion as long as it is asked to be.
 Planned<Trajectory> lasting(Planned<Trajectory> plan, const MoveParameters& parameters) {
     constexpr double rounding = 1e-6;  // [s]
@@ -100,11 +105,8 @@ Planned<Trajectory> lasting(Planned<Trajectory> plan, const MoveParameters& para
     }
     const double shortest = plan->duration().count();
     if (*parameters.duration < shortest - rounding) {
-        motion::Refusal refusal;
-        refusal.error = {Errc::out_of_range,
-                         fmt::format("Duration {} s is shorter than possible: {:.4f} s",
-                                     *parameters.duration, shortest)};
-        return tl::unexpected(std::move(refusal));
+        return outOfRange(fmt::format("Duration {} s is shorter than possible: {:.4f} s",
+                                      *parameters.duration, shortest));
     }
     return plan->stretchedTo(motion::Seconds(*parameters.duration));
 }
@@ -114,10 +116,7 @@ motion::Planned<void> checkCount(std::string_view name, std::size_t count, std::
     if (count == 0 || count == poses) {
         return {};
     }
-    motion::Refusal refusal;
-    refusal.error = {Errc::out_of_range,
-                     fmt::format("{}: {} values for {} poses", name, count, poses)};
-    return tl::unexpected(std::move(refusal));
+    return outOfRange(fmt::format("{}: {} values for {} poses", name, count, poses));
 }
 
 }  // namespace
@@ -146,14 +145,11 @@ Planned<Trajectory> planCartesianLinear(const RobotModel& model, const JointVect
 
 Planned<Trajectory> planCartesianPath(const RobotModel& model, const JointVector& start,
                                       const PathMoveParameters& parameters) {
-    const auto& [poses, radii, speeds] =
-        std::tie(parameters.poses, parameters.blend_radii, parameters.speeds);
-    for (const auto& checked : {checkCount("BlendRadii", radii.size(), poses.size()),
-                                checkCount("Speeds", speeds.size(), poses.size())}) {
-        if (!checked) {
-            return tl::unexpected(checked.error());
-        }
-    }
+    const auto& poses = parameters.poses;
+    const auto& radii = parameters.blend_radii;
+    const auto& speeds = parameters.speeds;
+    METIER_TRY(checkCount("BlendRadii", radii.size(), poses.size()));
+    METIER_TRY(checkCount("Speeds", speeds.size(), poses.size()));
     motion::PathRequest request{commonLinRequest(start, parameters), {}};
     request.lin.reference = reference(parameters);
     for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -8,7 +8,8 @@ using skill::Field;
 namespace {
 
 template <typename Results>
-void addMoveResults(skill::FieldList<Results>& list) {
+skill::FieldList<Results> moveResults() {
+    skill::FieldList<Results> list;
     add(list, &MoveResults::reached_pose,
         Field{.name = "ReachedPose",
               .description = "Measured pose of the tool frame in the base frame",
@@ -39,9 +40,11 @@ void addMoveResults(skill::FieldList<Results>& list) {
         Field{.name = "LargestLateness",
               .description = "Most that a set-point came before or after its time",
               .unit = skill::kSecond});
+    return list;
 }
 
-void addForceResults(skill::FieldList<ForceMoveResults>& list) {
+skill::FieldList<ForceMoveResults> forceMoveResults() {
+    auto list = moveResults<ForceMoveResults>();
     list.add(&ForceMoveResults::contact_force,
              Field{.name = "ContactForce",
                    .description = "Force at the end of the motion, in the base frame",
@@ -58,26 +61,18 @@ void addForceResults(skill::FieldList<ForceMoveResults>& list) {
              Field{.name = "ForcesMax",
                    .description = "Largest force along each axis of the base frame",
                    .unit = skill::kNewton});
+    return list;
 }
 
 }  // namespace
 
 const skill::FieldList<MoveResults>& moveResultFields() {
-    static const auto fields = [] {
-        skill::FieldList<MoveResults> list;
-        addMoveResults(list);
-        return list;
-    }();
+    static const auto fields = moveResults<MoveResults>();
     return fields;
 }
 
 const skill::FieldList<ForceMoveResults>& forceMoveResultFields() {
-    static const auto fields = [] {
-        skill::FieldList<ForceMoveResults> list;
-        addMoveResults(list);
-        addForceResults(list);
-        return list;
-    }();
+    static const auto fields = forceMoveResults();
     return fields;
 }
 
