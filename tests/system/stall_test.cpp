@@ -53,7 +53,7 @@ opcua::ServerOptions serverOptions() {
 class HangingServer : public ::testing::Test {
 protected:
     HangingServer() {
-        auto arm = orThrow(robot_skills::makeArmSkills(*arm_, model_, clock_));
+        auto arm = orThrow(robot_skills::makeArmSkills({*arm_}, model_, clock_));
         const auto system = orThrow(opcua_skill::publishMotionDeviceSystem(
             server_->nodes(),
             {"Test", "An arm of the test.", "metier", "UR5", {"1", "2", "3", "4", "5", "6"}}));

@@ -62,7 +62,7 @@ ServedArm::ServedArm(std::uint16_t port, double fastest) : model_(loadModel()) {
     server_ = opcua::Server::create(options).value();
     skills_ = opcua_skill::SkillServer::create(*server_, clock_).value();
     const auto system = opcua_skill::findMotionDeviceSystem(server_->nodes()).value();
-    auto skills = robot_skills::makeArmSkills(*arm_, model_, clock_).value();
+    auto skills = robot_skills::makeArmSkills({*arm_}, model_, clock_).value();
     const auto node = server_->nodes().browse(system.skills).value().front().target;
     program_ = skills_->bind(node, std::move(skills.position_stream)).value();
     program_->attach(*this);

@@ -1,7 +1,5 @@
 #include "metier/robot_skills/device_watch.hpp"
 
-#include <utility>
-
 namespace metier::robot_skills {
 
 namespace {
@@ -24,30 +22,19 @@ void pass(const std::vector<skill::Program*>& programs, const device::Safety& sa
 
 }  // namespace
 
-DeviceWatch::DeviceWatch(device::Arm& arm, std::shared_ptr<skill::Executor> executor,
-                         std::vector<skill::Program*> programs)
-    : programs_(std::make_shared<const Programs>(std::move(programs))) {
-    watch(arm, std::move(executor));
-}
-
-DeviceWatch::DeviceWatch(device::Gripper& gripper, std::shared_ptr<skill::Executor> executor,
-                         std::vector<skill::Program*> programs)
-    : programs_(std::make_shared<const Programs>(std::move(programs))) {
-    watch(gripper, std::move(executor));
-}
-
-template <typename Device>
-void DeviceWatch::watch(Device& device, std::shared_ptr<skill::Executor> executor) {
-    const auto notice = [executor = std::move(executor),
-                         watched = std::weak_ptr(programs_)](const device::Safety& safety) {
+device::Arm::SafetyCallback DeviceWatch::notice(std::shared_ptr<skill::Executor> executor) const {
+    return [executor = std::move(executor),
+            watched = std::weak_ptr(programs_)](const device::Safety& safety) {
         executor->post([watched, safety] {
             if (const auto alive = watched.lock()) {
                 pass(*alive, safety);
             }
         });
     };
-    registration_ = device.onSafetyChange(notice);
-    if (const auto now = device.safety(); now.state != device::SafetyState::normal) {
+}
+
+void DeviceWatch::begin(const device::Safety& now) const {
+    if (now.state != device::SafetyState::normal) {
         pass(*programs_, now);
     }
 }

@@ -294,6 +294,13 @@ TEST_F(ForceMoveBesideAPlanner, IsHaltedByTheForceWhereThatIsAnError) {
     EXPECT_EQ(force.subState(), SubState::halted_force);
 }
 
+TEST_F(ForceMoveBesideAPlanner, ReportsItsStoppingTime) {
+    ASSERT_TRUE(bench.start(kForceMove, downUntil(20, {{"Duration", 3.0}})));
+    bench.steps(100);
+    ASSERT_TRUE(bench.stoppingEstimate());
+    EXPECT_GT(bench.stoppingEstimate()->time.count(), 0.0);
+}
+
 TEST_F(ForceMoveBesideAPlanner, TakesItsDuration) {
     ASSERT_TRUE(bench.start(kForceMove, downUntil(20, {{"Duration", 3.0}})));
     ASSERT_TRUE(bench.stepUntil(kForceMove, State::ready));

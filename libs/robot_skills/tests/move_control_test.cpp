@@ -161,7 +161,7 @@ TEST_F(MovingArm, UsesTheArmsOwnStopWhenItDoesNotComeToRestInTime) {
     skill::ProgramOptions impatient;
     impatient.rest_deadline = std::chrono::milliseconds(1);
     ASSERT_TRUE(bench.stepUntil(kCartesianLinear, State::ready));
-    auto skills = makeArmSkills(bench.arm(), bench.model(), bench.executor().clock()).value();
+    auto skills = makeArmSkills({bench.arm()}, bench.model(), bench.executor().clock()).value();
     auto executor = std::make_shared<skill::testing::ManualExecutor>();
     skill::Program program(impatient, std::move(skills.moves[1]), executor, executor->clock());
     ASSERT_TRUE(program.write(bench.caller(), "TargetPosition", Frame{0, 0, -0.1}));

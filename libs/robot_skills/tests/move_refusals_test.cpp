@@ -193,7 +193,7 @@ TEST(ArmSkills, RefuseAModelWithOtherAxes) {
         joint_simulator::JointSimulator::create(joint_simulator::optionsFor(modelOf("ur5")))
             .value();
     const ManualClock clock;
-    const auto skills = makeArmSkills(*arm, model, clock);
+    const auto skills = makeArmSkills({*arm}, model, clock);
     ASSERT_FALSE(skills);
     EXPECT_THAT(skills.error().message, HasSubstr("6 axes"));
     EXPECT_THAT(skills.error().message, HasSubstr("7"));

@@ -22,14 +22,19 @@ namespace {
 using Parameters = skill::FieldList<GripperParameters>;
 using Ask = Result<void> (Gripper::*)(const device::GripperRequest&, Gripper::Done);
 
-/// Differences between the skills of a gripper.
-struct Kind {
-    skill::SkillDescription description;
-    Parameters fields;
+/// Motion of the jaws that a skill asks for.
+struct JawMotion {
     Ask ask;
     /// Errors: the gripper says that it is done, but its state says otherwise.
     Result<void> (*check)(const GripperOutcome&);
     bool needs_width = false;
+};
+
+/// Differences between the skills of a gripper.
+struct Kind {
+    skill::SkillDescription description;
+    Parameters fields;
+    JawMotion motion;
 };
 
 std::optional<double> unlessZero(double value) {
@@ -66,11 +71,7 @@ Result<void> checkRequest(const device::GripperRequest& request, const device::G
 
 /// Whether the gripper could begin to move now.
 Result<void> checkReady(const Gripper& gripper) {
-    const auto safety = gripper.safety();
-    if (safety.state != device::SafetyState::normal) {
-        return fail(Errc::device_fault,
-                    fmt::format("{} ({})", safety.text, device::toString(safety.state)));
-    }
+    METIER_TRY(device::checkNormal(gripper.safety()));
     if (gripper.state().moving) {
         return fail(Errc::invalid_state, gripper.info().name + ": the jaws still move");
     }
@@ -82,9 +83,7 @@ public:
     GripperSkill(Gripper& gripper, Kind kind)
         : TypedSkill(std::move(kind.description), std::move(kind.fields), gripperResultFields()),
           gripper_(gripper),
-          ask_(kind.ask),
-          check_(kind.check),
-          needs_width_(kind.needs_width) {}
+          motion_(kind.motion) {}
 
     /// Errors: also timeout, while jaws that were asked to stop still move; call it again.
     Result<void> reset() override {
@@ -99,18 +98,15 @@ protected:
         const GripperParameters& parameters) override {
         device::GripperRequest request;
         request.force = unlessZero(parameters.force);
-        request.width = needs_width_ ? parameters.width : unlessZero(parameters.width);
-        const auto possible =
-            checkReady(gripper_).and_then([&] { return checkRequest(request, gripper_.info()); });
-        if (!possible) {
-            return fail(possible.error());
-        }
+        request.width = motion_.needs_width ? parameters.width : unlessZero(parameters.width);
+        METIER_TRY(checkReady(gripper_));
+        METIER_TRY(checkRequest(request, gripper_.info()));
         return std::make_unique<GripperWork>(
             gripper_,
-            [ask = ask_, request](Gripper& gripper, Gripper::Done done) {
+            [ask = motion_.ask, request](Gripper& gripper, Gripper::Done done) {
                 return (gripper.*ask)(request, std::move(done));
             },
-            [check = check_](const GripperOutcome& outcome) {
+            [check = motion_.check](const GripperOutcome& outcome) {
                 return check(outcome).map([&] {
                     return gripperResultFields().write({outcome.width, outcome.part_held});
                 });
@@ -120,23 +116,23 @@ protected:
 
 private:
     Gripper& gripper_;
-    Ask ask_;
-    Result<void> (*check_)(const GripperOutcome&);
-    bool needs_width_;
+    JawMotion motion_;
     GripperWork::Moving moving_ = std::make_shared<std::atomic<bool>>(false);
 };
 
 Field forceField(std::string description) {
-    Field field{.name = "Force", .description = std::move(description), .unit = skill::kNewton};
-    field.range = Range{0.0, 1000.0};
-    field.default_value = 0.0;
-    return field;
+    return {.name = "Force",
+            .description = std::move(description),
+            .unit = skill::kNewton,
+            .range = Range{0.0, 1000.0},
+            .default_value = 0.0};
 }
 
 Field widthField(std::string description) {
-    Field field{.name = "Width", .description = std::move(description), .unit = skill::kMetre};
-    field.range = Range{0.0, 1.0};
-    return field;
+    return {.name = "Width",
+            .description = std::move(description),
+            .unit = skill::kMetre,
+            .range = Range{0.0, 1.0}};
 }
 
 Field widthOption(std::string description) {
@@ -181,14 +177,14 @@ Kind graspKind() {
     return {describe("GraspGripperSkill", "Closes the jaws until they hold a part"),
             fields(forceField("Force to hold the part with; Null or 0: the gripper's own"),
                    widthOption("Expected width of the part; 0: not known")),
-            &Gripper::grasp, checkHeld};
+            {&Gripper::grasp, checkHeld}};
 }
 
 Kind releaseKind() {
     return {describe("ReleaseGripperSkill", "Opens the jaws and lets the part go"),
             fields(forceField("Largest force while opening; Null or 0: the gripper's own"),
                    widthOption("Distance between the jaws to open to; 0: the gripper's own")),
-            &Gripper::release, checkFree};
+            {&Gripper::release, checkFree}};
 }
 
 Kind moveKind() {
@@ -196,7 +192,7 @@ Kind moveKind() {
         describe("MoveGripperSkill", "Moves the jaws to a width, whether or not there is a part"),
         fields(forceField("Largest force on the way; Null or 0: the gripper's own"),
                widthField("Distance between the jaws to move to")),
-        &Gripper::move, checkNothing, true};
+        {&Gripper::move, checkNothing, true}};
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "moves/arm_skill.hpp"
 
-#include <fmt/format.h>
-
 namespace metier::robot_skills {
 namespace {
 
@@ -14,25 +12,13 @@ Result<void> checkStanding(const device::Arm& arm) {
 }  // namespace
 
 Result<void> checkReady(const device::Arm& arm) {
-    const auto safety = arm.safety();
-    if (safety.state != device::SafetyState::normal) {
-        return fail(Errc::device_fault,
-                    fmt::format("{} ({})", safety.text, device::toString(safety.state)));
-    }
+    METIER_TRY(device::checkNormal(arm.safety()));
     return checkStanding(arm);
 }
 
 Result<void> resetArm(device::Arm& arm) {
-    return arm.resetFault().and_then([&] { return checkStanding(arm); });
-}
-
-Result<void> checkSameAxes(const device::Arm& arm, const motion::RobotModel& model) {
-    if (arm.info().axisCount() != model.axisCount()) {
-        return fail(Errc::invalid_argument,
-                    fmt::format("{} has {} axes, the model {} has {}", arm.info().name,
-                                arm.info().axisCount(), model.name(), model.axisCount()));
-    }
-    return {};
+    METIER_TRY(arm.resetFault());
+    return checkStanding(arm);
 }
 
 }  // namespace metier::robot_skills

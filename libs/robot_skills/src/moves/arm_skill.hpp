@@ -1,7 +1,6 @@
 #pragma once
 
 #include "metier/device/arm.hpp"
-#include "metier/motion/robot_model.hpp"
 
 namespace metier::robot_skills {
 
@@ -13,8 +12,5 @@ Result<void> checkReady(const device::Arm& arm);
 /// Errors: those of Arm::resetFault(); invalid_state while the arm still moves, which it may after
 /// the link to a controller was lost that goes on by itself.
 Result<void> resetArm(device::Arm& arm);
-
-/// Errors: invalid_argument if arm and model differ in their number of axes.
-Result<void> checkSameAxes(const device::Arm& arm, const motion::RobotModel& model);
 
 }  // namespace metier::robot_skills

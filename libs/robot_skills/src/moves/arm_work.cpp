@@ -5,13 +5,19 @@
 #include <cmath>
 #include <utility>
 
+#include "conversions.hpp"
+
 namespace metier::robot_skills {
 
 using device::SafetyState;
 using skill::Reason;
 
-ArmWork::ArmWork(device::Arm& arm, ToolDistance tool_distance)
-    : arm_(arm), tool_distance_(std::move(tool_distance)) {}
+ToolPose toolPoseOf(const motion::Trajectory& trajectory) {
+    return [trajectory](const motion::JointVector& joints) { return trajectory.toolPose(joints); };
+}
+
+ArmWork::ArmWork(device::Arm& arm, ToolPose tool_pose)
+    : arm_(arm), tool_pose_(std::move(tool_pose)) {}
 
 void ArmWork::begin(skill::ExecutionHandle execution, std::function<bool()> in_motion) {
     execution_ = std::move(execution);
@@ -39,9 +45,11 @@ Result<void> ArmWork::checkNotMoved(const device::JointArray& rest) const {
     }
     return fail(
         Errc::out_of_range,
-        fmt::format("the arm was moved while it was suspended: axis {} by {:.4f} rad, limit "
-                    "{} rad; the tool frame by {:.4f} m",
-                    worst + 1, moved, kMovedTolerance, tool_distance_(position, rest)));
+        fmt::format(
+            "the arm was moved while it was suspended: axis {} by {:.4f} rad, limit "
+            "{} rad; the tool frame by {:.4f} m",
+            worst + 1, moved, kMovedTolerance,
+            motion::distanceBetween(tool_pose_(toVector(position)), tool_pose_(toVector(rest)))));
 }
 
 }  // namespace metier::robot_skills

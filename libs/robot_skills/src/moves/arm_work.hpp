@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "metier/device/arm.hpp"
+#include "metier/motion/trajectory.hpp"
 #include "metier/skill/skill.hpp"
 
 namespace metier::robot_skills {
@@ -10,14 +11,17 @@ namespace metier::robot_skills {
 /// Most that any axis may have been moved during a rest for Resume to go on [rad].
 inline constexpr double kMovedTolerance = 2e-3;
 
-/// Distance of the tool frame between two joint positions [m], for messages.
-using ToolDistance = std::function<double(const device::JointArray&, const device::JointArray&)>;
+/// Pose of the tool frame at a joint position, for messages.
+using ToolPose = std::function<motion::Pose(const motion::JointVector&)>;
+
+/// Makes that function for the tool frame of `trajectory`.
+ToolPose toolPoseOf(const motion::Trajectory& trajectory);
 
 /// An execution that moves an arm by any planner.
 class ArmWork : public skill::ExecutionWork {
 protected:
     /// \param arm must outlive the work
-    ArmWork(device::Arm& arm, ToolDistance tool_distance);
+    ArmWork(device::Arm& arm, ToolPose tool_pose);
 
     /// From now on a change of the safety state ends the execution if it comes while the arm is not
     /// in motion; during a motion the set-points' source reports it.
@@ -31,7 +35,7 @@ protected:
 
 private:
     device::Arm& arm_;
-    ToolDistance tool_distance_;
+    ToolPose tool_pose_;
     skill::ExecutionHandle execution_;
     device::Registration safety_watch_;
 };

@@ -26,8 +26,7 @@ void tellMoveDone(const skill::ExecutionHandle& tell, const MoveResults& results
     tell.finish(moveResultFields().write(results));
 }
 
-// ---- what caller and controller share
-// ------------------------------------------------------------
+// ---- what caller and controller share -----------------------------------------------------------
 
 ControllerPlannedMove::ControllerPlannedMove(Setup setup)
     : setup_(std::move(setup)),
@@ -111,17 +110,15 @@ MoveResults ControllerPlannedMove::results(const device::JointArray& reached) co
             .motion_end_time = last_ended_};
 }
 
-// ---- the execution
-// -------------------------------------------------------------------------------
+// ---- the execution ------------------------------------------------------------------------------
 
-ControllerPlannedWork::ControllerPlannedWork(Devices devices,
+ControllerPlannedWork::ControllerPlannedWork(device::MotionPlanner& planner,
                                              device::ControllerPlannedMotion motion,
-                                             std::shared_ptr<ControllerPlannedMove> move,
-                                             ToolDistance tool_distance)
-    : ArmWork(devices.arm, std::move(tool_distance)),
-      planner_(devices.planner),
+                                             ControllerPlannedMove::Setup move)
+    : ArmWork(move.arm, toolPoseOf(move.trajectory)),
+      planner_(planner),
       motion_(std::move(motion)),
-      move_(std::move(move)) {
+      move_(std::make_shared<ControllerPlannedMove>(std::move(move))) {
     motion_.observer = move_;
 }
 

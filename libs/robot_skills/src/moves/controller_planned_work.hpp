@@ -76,14 +76,10 @@ private:
 /// An execution that lets the arm's controller plan and run the motion.
 class ControllerPlannedWork final : public ArmWork {
 public:
-    struct Devices {
-        device::Arm& arm;  ///< both must outlive the work
-        device::MotionPlanner& planner;
-    };
-
-    /// \param motion what `move` stands for
-    ControllerPlannedWork(Devices devices, device::ControllerPlannedMotion motion,
-                          std::shared_ptr<ControllerPlannedMove> move, ToolDistance tool_distance);
+    /// \param planner that of the arm; must outlive the work
+    /// \param motion  what `move` stands for
+    ControllerPlannedWork(device::MotionPlanner& planner, device::ControllerPlannedMotion motion,
+                          ControllerPlannedMove::Setup move);
     /// Stops the motion if it still runs.
     ~ControllerPlannedWork() override;
     ControllerPlannedWork(const ControllerPlannedWork&) = delete;

@@ -2,22 +2,16 @@
 
 namespace metier::robot_skills {
 
-namespace {
-
-// Number of points in the joint path that Check returns.
-constexpr std::size_t kPreviewPoints = 50;
-
-}  // namespace
-
-ToolDistance toolDistance(const motion::Trajectory& trajectory) {
-    return [trajectory](const device::JointArray& a, const device::JointArray& b) {
-        return motion::distanceBetween(trajectory.toolPose(toVector(a)),
-                                       trajectory.toolPose(toVector(b)));
-    };
+skill::SkillDescription describeMove(std::string name, std::string description) {
+    return {.name = name,
+            .type = name + "Type",
+            .description = std::move(description),
+            .on_owner_loss = skill::OwnerLossAction::halt};
 }
 
 skill::CheckReport reportOf(const motion::Planned<motion::Trajectory>& plan) {
-    const auto feasibility = motion::assess(plan, kPreviewPoints);
+    constexpr std::size_t preview_points = 50;
+    const auto feasibility = motion::assess(plan, preview_points);
     skill::CheckReport report;
     if (feasibility.refusal) {
         report.possible = false;

@@ -7,7 +7,7 @@
 #include "conversions.hpp"
 #include "metier/skill/typed_skill.hpp"
 #include "moves/arm_skill.hpp"
-#include "moves/arm_work.hpp"
+#include "moves/move_skills.hpp"
 #include "moves/move_variant.hpp"
 #include "moves/timetable.hpp"
 
@@ -19,9 +19,8 @@ template <typename Parameters>
 using MakeWork = std::function<Result<std::unique_ptr<skill::ExecutionWork>>(
     const motion::Trajectory&, const Parameters&)>;
 
-/// Makes the function for the distance of the tool frame of `trajectory` between two joint
-/// positions.
-ToolDistance toolDistance(const motion::Trajectory& trajectory);
+/// For a skill of that name that moves an arm.
+skill::SkillDescription describeMove(std::string name, std::string description);
 
 /// Makes the answer of Check from a plan.
 skill::CheckReport reportOf(const motion::Planned<motion::Trajectory>& plan);
@@ -31,20 +30,15 @@ skill::CheckReport reportOf(const motion::Planned<motion::Trajectory>& plan);
 template <typename Parameters, typename Results = MoveResults>
 class MoveSkill final : public skill::TypedSkill<Parameters, Results> {
 public:
-    struct Setup {
-        device::Arm& arm;
-        const motion::RobotModel& model;
-        const Clock& clock;
-        MakeWork<Parameters> make_work;
-    };
-
-    MoveSkill(Setup setup, MoveVariant<Parameters> variant, skill::FieldList<Results> results)
+    MoveSkill(MovedArm arm, MoveVariant<Parameters> variant, skill::FieldList<Results> results,
+              MakeWork<Parameters> make_work)
         : skill::TypedSkill<Parameters, Results>(std::move(variant.description),
                                                  std::move(variant.fields), std::move(results)),
-          setup_(std::move(setup)),
-          plan_(std::move(variant.plan)) {}
+          arm_(std::move(arm)),
+          plan_(std::move(variant.plan)),
+          make_work_(std::move(make_work)) {}
 
-    Result<void> reset() override { return resetArm(setup_.arm); }
+    Result<void> reset() override { return resetArm(arm_.arm); }
 
 protected:
     Result<std::unique_ptr<skill::ExecutionWork>> plan(const Parameters& parameters) override {
@@ -53,40 +47,32 @@ protected:
         if (!trajectory) {
             return fail(std::move(trajectory.error().error));
         }
-        return setup_.make_work(*trajectory, parameters);
+        return make_work_(*trajectory, parameters);
     }
 
     Result<skill::CheckReport> assess(const Parameters& parameters) override {
         METIER_TRY(checkCanStart(parameters));
         const auto trajectory = planFromHere(parameters);
         if (trajectory) {
-            METIER_TRY(setup_.make_work(*trajectory, parameters));
+            METIER_TRY(make_work_(*trajectory, parameters));
         }
         return reportOf(trajectory);
     }
 
 private:
     Result<void> checkCanStart(const Parameters& parameters) const {
-        auto ready = checkReady(setup_.arm);
-        return ready ? checkStartTime(parameters.start_time, setup_.clock) : ready;
+        METIER_TRY(checkReady(arm_.arm));
+        return checkStartTime(parameters.start_time, arm_.clock);
     }
 
     motion::Planned<motion::Trajectory> planFromHere(const Parameters& parameters) const {
-        const auto start = toVector(setup_.arm.state().commanded_position);
-        return plan_(setup_.model, start, parameters);
+        const auto start = toVector(arm_.arm.state().commanded_position);
+        return plan_(arm_.model, start, parameters);
     }
 
-    Setup setup_;
+    MovedArm arm_;
     MovePlan<Parameters> plan_;
+    MakeWork<Parameters> make_work_;
 };
-
-/// Errors: invalid_argument if arm and model differ in their number of axes.
-template <typename Parameters>
-Result<std::unique_ptr<skill::Skill>> makeMove(typename MoveSkill<Parameters>::Setup setup,
-                                               MoveVariant<Parameters> variant) {
-    METIER_TRY(checkSameAxes(setup.arm, setup.model));
-    return std::make_unique<MoveSkill<Parameters>>(std::move(setup), std::move(variant),
-                                                   moveResultFields());
-}
 
 }  // namespace metier::robot_skills

@@ -2,50 +2,79 @@
 
 #include <utility>
 
+#include "moves/controller_planned_motion.hpp"
+#include "moves/controller_planned_work.hpp"
+#include "moves/force_move_skill.hpp"
 #include "moves/move_skill.hpp"
-#include "moves/streamed_move.hpp"
+#include "moves/move_source.hpp"
 
 namespace metier::robot_skills {
 
 using motion::Trajectory;
+using Path = PathDeviationMeter::Path;
 
 namespace {
 
-/// A move whose set-points the arm's cycle thread takes from the plan.
+/// A move that is run by the controller's motion where it is what was asked, else by metier's own
+/// set-points.
 template <typename Parameters>
-Result<std::unique_ptr<skill::Skill>> makeStreamed(const StreamedArm& streamed,
-                                                   MoveVariant<Parameters> variant) {
+std::unique_ptr<skill::Skill> makeMove(const MovedArm& arm, MoveVariant<Parameters> variant) {
     const auto make_work =
-        [streamed, path = variant.path](
+        [arm, path = variant.path, end = variant.end](
             const Trajectory& trajectory,
             const Parameters& parameters) -> Result<std::unique_ptr<skill::ExecutionWork>> {
-        return makeStreamedWork(streamed,
-                                {trajectory, path, parameters.start_time, parameters.stop_time});
+        if (arm.planner != nullptr) {
+            if (auto motion = controllerPlannedMotion({arm.model, trajectory, path, parameters})) {
+                return std::make_unique<ControllerPlannedWork>(
+                    *arm.planner, std::move(*motion),
+                    ControllerPlannedMove::Setup{arm.arm, arm.clock, trajectory, path, end,
+                                                 tellMoveDone});
+            }
+        }
+        return makeStreamedWork(arm, {trajectory, path, parameters});
     };
-    return makeMove<Parameters>({streamed.arm, streamed.model, streamed.clock, make_work},
-                                std::move(variant));
+    return std::make_unique<MoveSkill<Parameters>>(arm, std::move(variant), moveResultFields(),
+                                                   make_work);
+}
+
+std::unique_ptr<skill::Skill> makePathMove(MovedArm arm) {
+    arm.planner = nullptr;
+    return makeMove<PathMoveParameters>(
+        arm, {describeMove("CartesianPathMoveSkill",
+                           "Moves the tool frame on straight lines through poses, corners rounded"),
+              pathMoveFields(arm.model), Path::cartesian_line, MoveEnd::pose, planCartesianPath});
 }
 
 }  // namespace
 
-Result<std::unique_ptr<skill::Skill>> makeCartesianPtpMoveSkill(const StreamedArm& arm) {
-    return makeStreamed(arm, cartesianPtp(arm.model));
-}
-
-Result<std::unique_ptr<skill::Skill>> makeCartesianLinearMoveSkill(const StreamedArm& arm) {
-    return makeStreamed(arm, cartesianLinear(arm.model));
-}
-
-Result<std::unique_ptr<skill::Skill>> makeJointPtpMoveSkill(const StreamedArm& arm) {
-    return makeStreamed(arm, jointPtp(arm.model));
-}
-
-Result<std::unique_ptr<skill::Skill>> makeJointLinearMoveSkill(const StreamedArm& arm) {
-    return makeStreamed(arm, jointLinear(arm.model));
-}
-
-Result<std::unique_ptr<skill::Skill>> makeCartesianPathMoveSkill(const StreamedArm& arm) {
-    return makeStreamed(arm, cartesianPath(arm.model));
+std::vector<std::unique_ptr<skill::Skill>> makeMoveSkills(const MovedArm& arm) {
+    const auto& model = arm.model;
+    std::vector<std::unique_ptr<skill::Skill>> moves;
+    moves.push_back(makeMove<CartesianMoveParameters>(
+        arm, {describeMove("CartesianPtpMoveSkill",
+                           "Moves all axes together so that the tool frame reaches a pose"),
+              cartesianMoveFields(model, MoveKind::ptp), Path::joint_line, MoveEnd::joints,
+              planCartesianPtp}));
+    moves.push_back(makeMove<CartesianMoveParameters>(
+        arm, {describeMove("CartesianLinearMoveSkill",
+                           "Moves the tool frame on a straight line to a pose"),
+              cartesianMoveFields(model, MoveKind::linear), Path::cartesian_line, MoveEnd::pose,
+              planCartesianLinear}));
+    moves.push_back(makeMove<JointMoveParameters>(
+        arm,
+        {describeMove("JointPtpMoveSkill", "Moves all axes together to a joint position"),
+         jointMoveFields(model, MoveKind::ptp), Path::joint_line, MoveEnd::joints, planJointPtp}));
+    moves.push_back(makeMove<JointMoveParameters>(
+        arm,
+        {describeMove("JointLinearMoveSkill",
+                      "Moves the tool frame on a straight line to where a joint position puts it"),
+         jointMoveFields(model, MoveKind::linear), Path::cartesian_line, MoveEnd::joints,
+         planJointLinear}));
+    if (arm.planner != nullptr || arm.sensor != nullptr) {
+        moves.push_back(makeForceMoveSkill(arm));
+    }
+    moves.push_back(makePathMove(arm));
+    return moves;
 }
 
 }  // namespace metier::robot_skills

@@ -7,6 +7,8 @@
 
 #include "conversions.hpp"
 #include "metier/motion/frame.hpp"
+#include "moves/source_work.hpp"
+#include "moves/stop_time.hpp"
 
 namespace metier::robot_skills {
 
@@ -18,16 +20,22 @@ constexpr double kWayBack = 0.2;
 
 }  // namespace
 
-MoveSource::MoveSource(Setup setup)
-    : arm_(std::move(setup.info.name)),
-      cycle_(setup.info.cycleSeconds()),
-      stop_time_(setup.stop_time),
-      execution_(setup.trajectory),
-      stopping_(std::move(setup.stopping)),
-      timetable_(setup.timetable),
-      deviation_(setup.trajectory, setup.path),
-      contact_(std::move(setup.contact)),
-      offset_(setup.info.axisCount()),
+std::unique_ptr<skill::ExecutionWork> makeStreamedWork(const MovedArm& arm, StreamedMove move) {
+    auto tool_pose = toolPoseOf(move.trajectory);
+    return std::make_unique<SourceWork>(arm.arm, std::make_shared<MoveSource>(arm, std::move(move)),
+                                        std::move(tool_pose));
+}
+
+MoveSource::MoveSource(const MovedArm& arm, StreamedMove move)
+    : arm_(arm.arm.info().name),
+      cycle_(arm.arm.info().cycleSeconds()),
+      stop_time_(stopTimeFor(move.trajectory, arm.model, move.parameters.stop_time)),
+      execution_(move.trajectory),
+      stopping_(arm.stopping),
+      timetable_(arm.clock, move.parameters.start_time),
+      deviation_(move.trajectory, move.path),
+      contact_(std::move(move.contact)),
+      offset_(arm.arm.info().axisCount()),
       way_back_(kWayBack) {}
 
 device::JointArray MoveSource::restingPlace() const noexcept {

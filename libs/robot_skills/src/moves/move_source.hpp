@@ -5,8 +5,8 @@
 
 #include "metier/motion/motion_run.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
-#include "metier/robot_skills/stopping_report.hpp"
 #include "moves/motion_run_source.hpp"
+#include "moves/move_skills.hpp"
 #include "moves/path_deviation.hpp"
 #include "moves/settling.hpp"
 #include "moves/timetable.hpp"
@@ -23,22 +23,21 @@ public:
     virtual void tell(const skill::ExecutionHandle& tell, const MoveResults& results) = 0;
 };
 
+/// A move whose set-points the arm's cycle thread takes from metier's plan.
+struct StreamedMove {
+    motion::Trajectory trajectory;
+    PathDeviationMeter::Path path;
+    const MoveParameters& parameters;
+    std::unique_ptr<ContactWatch> contact{};  ///< nullptr: none is watched for
+};
+
+/// The execution of that move; nothing moves yet.
+std::unique_ptr<skill::ExecutionWork> makeStreamedWork(const MovedArm& arm, StreamedMove move);
+
 /// Gives an arm the set-points of one planned motion, from rest to rest.
 class MoveSource final : public MotionRunSource {
 public:
-    struct Setup {
-        device::ArmInfo info;
-        motion::Trajectory trajectory;
-        PathDeviationMeter::Path path;
-        Timetable timetable;
-        std::unique_ptr<ContactWatch> contact{};  ///< nullptr: none is watched for
-        /// Duration of a Suspend [s]; 0: as short as the limits allow
-        double stop_time = 0.0;
-        /// Receives its stopping time.
-        std::shared_ptr<StoppingReport> stopping = std::make_shared<StoppingReport>();
-    };
-
-    explicit MoveSource(Setup setup);
+    MoveSource(const MovedArm& arm, StreamedMove move);
 
     Next next(const device::ArmState& state, device::JointArray& set_point) noexcept override;
     device::JointArray restingPlace() const noexcept override;
@@ -59,9 +58,9 @@ private:
 
     const std::string arm_;
     const double cycle_;      ///< [s]
-    const double stop_time_;  ///< [s]
+    const double stop_time_;  ///< duration of a Suspend [s]; 0: as short as the limits allow
     motion::MotionRun execution_;
-    const std::shared_ptr<StoppingReport> stopping_;
+    const std::shared_ptr<StoppingReport> stopping_;  // shared with those who publish it
     Timetable timetable_;
     PathDeviationMeter deviation_;
     Settling settling_;

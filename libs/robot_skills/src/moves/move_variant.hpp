@@ -29,18 +29,4 @@ struct MoveVariant {
     MoveEnd end;
     MovePlan<Parameters> plan;
 };
-using CartesianMoveVariant = MoveVariant<CartesianMoveParameters>;
-using PathMoveVariant = MoveVariant<PathMoveParameters>;
-using JointMoveVariant = MoveVariant<JointMoveParameters>;
-
-// The moves. `model` must outlive them.
-CartesianMoveVariant cartesianPtp(const motion::RobotModel& model);
-CartesianMoveVariant cartesianLinear(const motion::RobotModel& model);
-PathMoveVariant cartesianPath(const motion::RobotModel& model);
-JointMoveVariant jointPtp(const motion::RobotModel& model);
-JointMoveVariant jointLinear(const motion::RobotModel& model);
-
-/// For a skill of that name that moves an arm.
-skill::SkillDescription describeMove(std::string name, std::string description);
-
 }  // namespace metier::robot_skills

@@ -7,8 +7,8 @@ namespace metier::robot_skills {
 using Request = MotionRunSource::Request;
 
 SourceWork::SourceWork(device::Arm& arm, std::shared_ptr<MotionRunSource> source,
-                       ToolDistance tool_distance)
-    : ArmWork(arm, std::move(tool_distance)), source_(std::move(source)) {}
+                       ToolPose tool_pose)
+    : ArmWork(arm, std::move(tool_pose)), source_(std::move(source)) {}
 
 SourceWork::~SourceWork() {
     source_->request(Request::halt);

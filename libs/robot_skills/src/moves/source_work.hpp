@@ -11,8 +11,7 @@ namespace metier::robot_skills {
 class SourceWork : public ArmWork {
 public:
     /// \param arm must outlive the work
-    SourceWork(device::Arm& arm, std::shared_ptr<MotionRunSource> source,
-               ToolDistance tool_distance);
+    SourceWork(device::Arm& arm, std::shared_ptr<MotionRunSource> source, ToolPose tool_pose);
     /// Brakes on the path if it still moves; the arm keeps what it needs for that.
     ~SourceWork() override;
     SourceWork(const SourceWork&) = delete;

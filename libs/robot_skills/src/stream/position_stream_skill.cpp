@@ -48,8 +48,8 @@ public:
         std::shared_ptr<StreamReport> report;  // shared with those who publish it
     };
 
-    StreamWork(device::Arm& arm, Stream stream, ToolDistance tool_distance)
-        : SourceWork(arm, stream.source, std::move(tool_distance)), stream_(std::move(stream)) {}
+    StreamWork(device::Arm& arm, Stream stream, ToolPose tool_pose)
+        : SourceWork(arm, stream.source, std::move(tool_pose)), stream_(std::move(stream)) {}
 
     void start(skill::ExecutionHandle execution) override {
         stream_.report->restart();
@@ -70,7 +70,10 @@ public:
     Result<void> input(std::string_view parameter, const skill::LiveValue& live) override {
         if (const auto* ends = std::get_if<bool>(&live.value);
             parameter == kEndOfStream && ends != nullptr) {
-            return *ends ? finish() : Result<void>();
+            if (*ends) {
+                stream_.source->finish();
+            }
+            return {};
         }
         const auto* values = std::get_if<std::vector<double>>(&live.value);
         if (parameter != kTarget || values == nullptr) {
@@ -84,11 +87,6 @@ public:
     }
 
 private:
-    Result<void> finish() {
-        stream_.source->finish();
-        return {};
-    }
-
     Result<void> push(const std::vector<double>& values, std::optional<UtcTime> meant_for = {}) {
         if (stream_.source->finishing()) {
             return fail(Errc::invalid_state,
@@ -132,40 +130,23 @@ protected:
         METIER_ASSIGN(auto source,
                       StreamSource::create(model_, {arm_.info().cycleSeconds(),
                                                     toVector(arm_.state().commanded_position),
-                                                    options_.longest_silence, given.play_out_delay,
-                                                    options_.largest_lag, options_.report}));
-        METIER_TRY(checkBegins(*source, given));
+                                                    given.play_out_delay, options_}));
+        if (given.target_joint_position) {
+            METIER_ASSIGN(const auto first, JointVector::from(*given.target_joint_position));
+            METIER_TRY(source->checkFirst(first));
+        }
+        const auto arrivals = given.play_out_delay == 0.0 ? StreamTimes::Arrivals::rhythm
+                                                          : StreamTimes::Arrivals::each;
         return std::make_unique<StreamWork>(
             arm_,
-            StreamWork::Stream{std::move(source),
-                               StreamTimes(clock_, arm_.info().cycle, arrivalsFor(given)),
+            StreamWork::Stream{std::move(source), StreamTimes(clock_, arm_.info().cycle, arrivals),
                                given.target_joint_position, options_.report},
-            toolDistance());
+            [&model = model_](const JointVector& joints) {
+                return model.kinematics().forward(joints);
+            });
     }
 
 private:
-    static StreamTimes::Arrivals arrivalsFor(const PositionStreamParameters& given) noexcept {
-        return given.play_out_delay == 0.0 ? StreamTimes::Arrivals::rhythm
-                                           : StreamTimes::Arrivals::each;
-    }
-
-    static Result<void> checkBegins(const StreamSource& source,
-                                    const PositionStreamParameters& given) {
-        if (!given.target_joint_position) {
-            return {};
-        }
-        return JointVector::from(*given.target_joint_position)
-            .and_then([&](const JointVector& position) { return source.checkFirst(position); });
-    }
-
-    ToolDistance toolDistance() const {
-        return [&model = model_](const device::JointArray& a, const device::JointArray& b) {
-            const auto& kinematics = model.kinematics();
-            return motion::distanceBetween(kinematics.forward(toVector(a)),
-                                           kinematics.forward(toVector(b)));
-        };
-    }
-
     device::Arm& arm_;
     const RobotModel& model_;
     const Clock& clock_;
@@ -204,41 +185,38 @@ skill::FieldList<PositionStreamParameters> positionStreamFields(const RobotModel
 }
 
 const skill::FieldList<PositionStreamResults>& positionStreamResultFields() {
-    static const auto fields = [] {
-        skill::FieldList<PositionStreamResults> list;
-        list.add(&PositionStreamResults::set_points,
-                 Field{.name = "SetPoints", .description = "Number of set-points followed"});
-        list.add(&PositionStreamResults::missed_cycles,
+    static const auto fields =
+        skill::FieldList<PositionStreamResults>()
+            .add(&PositionStreamResults::set_points,
+                 Field{.name = "SetPoints", .description = "Number of set-points followed"})
+            .add(&PositionStreamResults::missed_cycles,
                  Field{.name = "MissedCycles",
-                       .description = "Control cycles without a set-point in time"});
-        list.add(&PositionStreamResults::duration, Field{.name = "Duration",
+                       .description = "Control cycles without a set-point in time"})
+            .add(&PositionStreamResults::duration, Field{.name = "Duration",
                                                          .description = "Time from Running to rest",
-                                                         .unit = skill::kSecond});
-        list.add(&PositionStreamResults::largest_lag,
+                                                         .unit = skill::kSecond})
+            .add(&PositionStreamResults::largest_lag,
                  Field{.name = "LargestStreamLag",
                        .description = "Most that a set-point waited longer than PlayOutDelay",
-                       .unit = skill::kSecond});
-        list.add(&PositionStreamResults::clock_step,
+                       .unit = skill::kSecond})
+            .add(&PositionStreamResults::clock_step,
                  Field{.name = "StreamClockStep",
                        .description = "Largest step of the client's clock between two set-points, "
                                       "below 0: back",
-                       .unit = skill::kSecond});
-        list.add(&PositionStreamResults::refused_set_points,
+                       .unit = skill::kSecond})
+            .add(&PositionStreamResults::refused_set_points,
                  Field{.name = "RefusedSetPoints",
-                       .description = "Number of set-points refused when they were written"});
-        list.add(&PositionStreamResults::dropped_set_points,
+                       .description = "Number of set-points refused when they were written"})
+            .add(&PositionStreamResults::dropped_set_points,
                  Field{.name = "DroppedSetPoints",
                        .description = "Number of set-points dropped, since their time was not "
                                       "after the one before"});
-        return list;
-    }();
     return fields;
 }
 
-Result<std::unique_ptr<skill::Skill>> makePositionStreamSkill(
-    device::Arm& arm, const RobotModel& model, const Clock& clock,
-    const PositionStreamOptions& options) {
-    METIER_TRY(checkSameAxes(arm, model));
+std::unique_ptr<skill::Skill> makePositionStreamSkill(device::Arm& arm, const RobotModel& model,
+                                                      const Clock& clock,
+                                                      const PositionStreamOptions& options) {
     return std::make_unique<PositionStreamSkill>(arm, model, clock, options);
 }
 

@@ -156,7 +156,7 @@ void StreamSource::take(const StreamedPosition& set_point) noexcept {
     const auto refused = follower_.accept(set_point.position, set_point.intended_time, now);
     if (refused && refused->reason == StreamRefusal::Reason::not_later) {
         ++dropped_;  // overtaken by a newer one on the way, or the sender's clock went back
-        setup_.report->noteDropped();
+        setup_.options.report->noteDropped();
         return;
     }
     if (refused) {
@@ -169,7 +169,8 @@ void StreamSource::take(const StreamedPosition& set_point) noexcept {
     silence_ = 0.0;
     dropped_ = 0;
     ++set_points_;
-    setup_.report->noteLag(std::max(0.0, follower_.lagOf(set_point.intended_time, now).count()));
+    setup_.options.report->noteLag(
+        std::max(0.0, follower_.lagOf(set_point.intended_time, now).count()));
     missed_cycles_ = follower_.missedCycles();
 }
 
@@ -180,17 +181,17 @@ bool StreamSource::isLate(const StreamedPosition& set_point, motion::Seconds now
     if (lag <= largestLag()) {
         return false;
     }
-    setup_.report->noteLag(lag);
+    setup_.options.report->noteLag(lag);
     return true;
 }
 
 /// No less than what a pause of the stream may cause.
 double StreamSource::largestLag() const noexcept {
-    return std::max(setup_.largest_lag, longestSilence());
+    return std::max(setup_.options.largest_lag, longestSilence());
 }
 
 double StreamSource::longestSilence() const noexcept {
-    return std::max(setup_.longest_silence, kLostAfterCycles * setup_.cycle);
+    return std::max(setup_.options.longest_silence, kLostAfterCycles * setup_.cycle);
 }
 
 void StreamSource::watchSilence() noexcept {
@@ -244,7 +245,7 @@ PositionStreamResults StreamSource::results() const noexcept {
     results.set_points += set_points_;
     results.missed_cycles += missed_cycles_;
     results.duration += static_cast<double>(cycles_) * setup_.cycle;
-    const auto figures = setup_.report->figures();
+    const auto figures = setup_.options.report->figures();
     results.largest_lag = figures.largest_lag;
     results.clock_step = figures.clock_step;
     results.refused_set_points = figures.refused;
@@ -253,7 +254,7 @@ PositionStreamResults StreamSource::results() const noexcept {
 }
 
 std::string StreamSource::reported() const {
-    const auto figures = setup_.report->figures();
+    const auto figures = setup_.options.report->figures();
     std::string text;
     if (std::abs(figures.clock_step) > kClockStep) {
         text +=
@@ -265,7 +266,7 @@ std::string StreamSource::reported() const {
     }
     if (figures.refused > 0) {
         text += fmt::format("; {} were refused, the last one: {}", figures.refused,
-                            setup_.report->lastRefusal());
+                            setup_.options.report->lastRefusal());
     }
     return text;
 }
@@ -295,7 +296,7 @@ void StreamSource::tellDone(const skill::ExecutionHandle& tell) {
         case End::late:
             tell.fail(skill::Reason::limit_violated,
                       fmt::format("the arm would be {:.3f} s behind its client, limit {:.3f} s{}",
-                                  setup_.report->figures().lag, largestLag(), reported()));
+                                  setup_.options.report->figures().lag, largestLag(), reported()));
             return;
         case End::refused:
             tell.fail(skill::Reason::limit_violated, motion::toError(*refusal_).message);

@@ -18,13 +18,10 @@ namespace metier::robot_skills {
 class StreamSource final : public MotionRunSource {
 public:
     struct Setup {
-        double cycle = 0.0;         ///< period of the arm [s]
-        motion::JointVector start;  ///< commanded joint position [rad]
-        double longest_silence = PositionStreamOptions{}.longest_silence;  ///< [s]
+        double cycle = 0.0;                      ///< period of the arm [s]
+        motion::JointVector start;               ///< commanded joint position [rad]
         std::optional<double> play_out_delay{};  ///< [s], PositionStreamParameters
-        double largest_lag = PositionStreamOptions{}.largest_lag;  ///< [s]
-        /// Shared with those who publish it, and with the next stream.
-        std::shared_ptr<StreamReport> report = std::make_shared<StreamReport>();
+        PositionStreamOptions options{};         ///< its report is shared with the next stream, too
     };
 
     /// \param model must outlive the source

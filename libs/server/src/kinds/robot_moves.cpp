@@ -66,7 +66,7 @@ Result<void> RobotMoves::offer(const std::string& name) {
     arm.nameOwner(host_->applicationUri());
     METIER_ASSIGN(const auto system,
                   opcua_skill::publishMotionDeviceSystem(host_->nodes(), specOf(name, arm.info())));
-    METIER_ASSIGN(auto skills, robot_skills::makeArmSkills(arm, robot_.model, host_->clock()));
+    METIER_ASSIGN(auto skills, robot_skills::makeArmSkills({arm}, robot_.model, host_->clock()));
     for (auto& move : skills.moves) {
         METIER_TRY(host_->skills().publish(
             system.skills, std::move(move),

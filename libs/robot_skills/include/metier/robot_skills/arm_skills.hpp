@@ -47,9 +47,4 @@ struct ArmDevices {
 Result<ArmSkills> makeArmSkills(const ArmDevices& devices, const motion::RobotModel& model,
                                 const Clock& clock, const PositionStreamOptions& stream = {});
 
-/// Makes the skills of an arm without planner and sensor: no force move.
-/// \param arm must outlive the skills
-Result<ArmSkills> makeArmSkills(device::Arm& arm, const motion::RobotModel& model,
-                                const Clock& clock, const PositionStreamOptions& stream = {});
-
 }  // namespace metier::robot_skills

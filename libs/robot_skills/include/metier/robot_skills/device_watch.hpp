@@ -1,10 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "metier/device/arm.hpp"
-#include "metier/device/gripper.hpp"
 #include "metier/skill/executor.hpp"
 #include "metier/skill/program.hpp"
 
@@ -18,20 +18,23 @@ namespace metier::robot_skills {
 /// Threading: made and destroyed on the owner's thread.
 class DeviceWatch {
 public:
-    /// \param arm      must outlive this
+    /// \param device   a device::Arm or device::Gripper, must outlive this
     /// \param executor of the owner's thread; shared, since the device's thread posts to it
     /// \param programs must outlive this
-    DeviceWatch(device::Arm& arm, std::shared_ptr<skill::Executor> executor,
-                std::vector<skill::Program*> programs);
-    /// Watches a gripper in the same way.
-    DeviceWatch(device::Gripper& gripper, std::shared_ptr<skill::Executor> executor,
-                std::vector<skill::Program*> programs);
+    template <typename Device>
+    DeviceWatch(Device& device, std::shared_ptr<skill::Executor> executor,
+                std::vector<skill::Program*> programs)
+        : programs_(std::make_shared<const Programs>(std::move(programs))),
+          registration_(device.onSafetyChange(notice(std::move(executor)))) {
+        begin(device.safety());
+    }
 
 private:
     using Programs = std::vector<skill::Program*>;
 
-    template <typename Device>
-    void watch(Device& device, std::shared_ptr<skill::Executor> executor);
+    /// The callback of the device's thread.
+    device::Arm::SafetyCallback notice(std::shared_ptr<skill::Executor> executor) const;
+    void begin(const device::Safety& now) const;
 
     // Shared with what was posted and has not run yet: it may find them gone.
     std::shared_ptr<const Programs> programs_;

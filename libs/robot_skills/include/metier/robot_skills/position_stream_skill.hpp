@@ -76,9 +76,10 @@ const skill::FieldList<PositionStreamResults>& positionStreamResultFields();
 /// A stream that never begins is finished after 10 s.
 ///
 /// \param arm, model, clock must outlive the skill
-/// Errors: invalid_argument if arm and model differ in their number of axes.
-Result<std::unique_ptr<skill::Skill>> makePositionStreamSkill(
-    device::Arm& arm, const motion::RobotModel& model, const Clock& clock,
-    const PositionStreamOptions& options = {});
+/// \param model with as many axes as the arm
+std::unique_ptr<skill::Skill> makePositionStreamSkill(device::Arm& arm,
+                                                      const motion::RobotModel& model,
+                                                      const Clock& clock,
+                                                      const PositionStreamOptions& options);
 
 }  // namespace metier::robot_skills
