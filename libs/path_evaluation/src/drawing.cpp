@@ -47,8 +47,8 @@ private:
 
 void drawOutline(SvgPicture& picture, const Panel& panel) {
     std::vector<Spot> spots;
-    for (const auto& corner : panel.path().square.corners()) {
-        spots.push_back(panel.spot(corner.translation));
+    for (std::size_t i = 0; i < kCorners; ++i) {
+        spots.push_back(panel.spot(panel.path().square.corner(i).translation));
     }
     picture.polygon(spots, "ideal");
 }

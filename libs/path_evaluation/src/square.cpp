@@ -17,10 +17,6 @@ motion::Pose Square::corner(std::size_t index) const {
     return pose;
 }
 
-std::array<motion::Pose, kCorners> Square::corners() const {
-    return {corner(0), corner(1), corner(2), corner(3)};
-}
-
 double distanceFromSegment(const Eigen::Vector3d& point, const Eigen::Vector3d& from,
                            const Eigen::Vector3d& to) {
     const Eigen::Vector3d line = to - from;

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <utility>
 
+#include "metier/path_evaluation/square.hpp"
+
 namespace metier::path_evaluation {
 namespace {
 
@@ -33,17 +35,8 @@ std::string escaped(std::string_view text) {
     return result;
 }
 
-/// Distance of a spot from the line between two others [px].
-double distanceFrom(Spot spot, Spot from, Spot to) {
-    const double along_x = to.x - from.x;
-    const double along_y = to.y - from.y;
-    const double length = std::hypot(along_x, along_y);
-    if (length == 0) {
-        return std::hypot(spot.x - from.x, spot.y - from.y);
-    }
-    const double t = std::clamp(
-        ((spot.x - from.x) * along_x + (spot.y - from.y) * along_y) / (length * length), 0.0, 1.0);
-    return std::hypot(spot.x - from.x - t * along_x, spot.y - from.y - t * along_y);
+Eigen::Vector3d toVector(Spot spot) {
+    return {spot.x, spot.y, 0};
 }
 
 }  // namespace
@@ -129,7 +122,8 @@ std::vector<Spot> simplified(std::span<const Spot> spots, double tolerance) {
         double farthest = tolerance;
         std::size_t at = first;
         for (std::size_t i = first + 1; i < last; ++i) {
-            const double distance = distanceFrom(spots[i], spots[first], spots[last]);
+            const double distance = distanceFromSegment(toVector(spots[i]), toVector(spots[first]),
+                                                        toVector(spots[last]));
             if (distance > farthest) {
                 farthest = distance;
                 at = i;

@@ -24,8 +24,8 @@ TEST(Square, StandsUprightAndClosesAtItsStart) {
 TEST(Square, KeepsTheOrientationOfItsStart) {
     auto square = unitSquare();
     square.start.rotation = Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX());
-    for (const auto& corner : square.corners()) {
-        EXPECT_TRUE(corner.rotation.isApprox(square.start.rotation));
+    for (std::size_t i = 0; i < kCorners; ++i) {
+        EXPECT_TRUE(square.corner(i).rotation.isApprox(square.start.rotation));
     }
 }
 

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <span>
-#include <vector>
 
 #include "metier/motion/pose.hpp"
 
@@ -24,7 +22,6 @@ struct Square {
 
     /// Pose at a corner: 0 start, 1 right, 2 upper right, 3 upper left; 4 is 0 again.
     motion::Pose corner(std::size_t index) const;
-    std::array<motion::Pose, kCorners> corners() const;
 };
 
 /// Distance of a point from a straight line between two points [m].
