@@ -102,13 +102,11 @@ struct JointRow {
 
 JointLimits readLimits(const TomlTable& table) {
     const std::vector<double> range = angles(table, "position", 2);
-    JointLimits limits;
-    limits.lower = range[0];
-    limits.upper = range[1];
-    limits.velocity = angle(table, "velocity");
-    limits.acceleration = angle(table, "acceleration");
-    limits.jerk = angle(table, "jerk");
-    return limits;
+    return {.lower = range[0],
+            .upper = range[1],
+            .velocity = angle(table, "velocity"),
+            .acceleration = angle(table, "acceleration"),
+            .jerk = angle(table, "jerk")};
 }
 
 /// T = Rz(q + offset) Tz(d) Tx(a) Rx(alpha)
@@ -150,14 +148,12 @@ void readJoints(const TomlTable& root, ChainDescription& chain) {
 }
 
 CartesianLimits readCartesian(const TomlTable& table) {
-    CartesianLimits limits;
-    limits.velocity = positive(table, "velocity");
-    limits.acceleration = positive(table, "acceleration");
-    limits.jerk = positive(table, "jerk");
-    limits.angular_velocity = positive(table, "angular_velocity");
-    limits.angular_acceleration = positive(table, "angular_acceleration");
-    limits.angular_jerk = positive(table, "angular_jerk");
-    return limits;
+    return {.velocity = positive(table, "velocity"),
+            .acceleration = positive(table, "acceleration"),
+            .jerk = positive(table, "jerk"),
+            .angular_velocity = positive(table, "angular_velocity"),
+            .angular_acceleration = positive(table, "angular_acceleration"),
+            .angular_jerk = positive(table, "angular_jerk")};
 }
 
 ToolFrame readTool(const TomlTable& table) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -13,24 +14,12 @@ namespace metier::path_evaluation {
 namespace {
 
 std::string escaped(std::string_view text) {
+    constexpr std::string_view special = "&<>\"";
+    constexpr std::array names{"&amp;", "&lt;", "&gt;", "&quot;"};
     std::string result;
     for (const char c : text) {
-        switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += c;
-        }
+        const auto name = special.find(c);
+        result += name < names.size() ? names.at(name) : std::string(1, c);
     }
     return result;
 }
