@@ -14,6 +14,19 @@ constexpr std::size_t kMost = 256;
 
 constexpr std::array<std::string_view, 4> kLevels{"none", "error", "warning", "info"};
 
+/// Ends one use of a topic, or all of them if the id is empty.
+template <typename Uses, typename IdsOf>
+void endUse(Uses& uses, const std::string& topic, const std::string& id, IdsOf ids_of) {
+    const auto use = uses.find(topic);
+    if (use == uses.end()) {
+        return;
+    }
+    ids_of(use->second).erase(id);
+    if (id.empty() || ids_of(use->second).empty()) {
+        uses.erase(use);
+    }
+}
+
 }  // namespace
 
 Rosbridge::Rosbridge(const MessageTypes& types, RosGraph graph, UtcTime started)
@@ -119,15 +132,8 @@ Result<void> Rosbridge::advertise(Client& client, const Json& request) {
 
 Result<void> Rosbridge::unadvertise(Client& client, const Json& request) {
     METIER_ASSIGN(const auto topic, requiredText(request, "topic"));
-    const auto advertised = client.advertised.find(topic);
-    if (advertised == client.advertised.end()) {
-        return {};
-    }
-    const std::string id = requestId(request);
-    advertised->second.erase(id);
-    if (id.empty() || advertised->second.empty()) {
-        client.advertised.erase(advertised);
-    }
+    endUse(
+        client.advertised, topic, requestId(request), [](auto& ids) -> auto& { return ids; });
     return {};
 }
 
@@ -164,15 +170,9 @@ Result<void> Rosbridge::subscribe(Client& client, const Json& request) {
 
 Result<void> Rosbridge::unsubscribe(Client& client, const Json& request) {
     METIER_ASSIGN(const auto topic, requiredText(request, "topic"));
-    const auto subscription = client.subscriptions.find(topic);
-    if (subscription == client.subscriptions.end()) {
-        return {};
-    }
-    const std::string id = requestId(request);
-    subscription->second.wishes.erase(id);
-    if (id.empty() || subscription->second.wishes.empty()) {
-        client.subscriptions.erase(subscription);
-    }
+    endUse(
+        client.subscriptions, topic, requestId(request),
+        [](auto& subscription) -> auto& { return subscription.wishes; });
     return {};
 }
 

@@ -119,8 +119,11 @@ Result<void> check(const MotionLimits& limits) {
     return fail(Errc::invalid_argument, "a share of 0 of an axis limit moves nothing");
 }
 
-bool finite(const Pose& pose) {
-    return pose.translation.allFinite() && pose.rotation.coeffs().allFinite();
+Result<void> check(const Pose& target) {
+    if (target.translation.allFinite() && target.rotation.coeffs().allFinite()) {
+        return {};
+    }
+    return fail(Errc::invalid_argument, "the target is not finite");
 }
 
 }  // namespace
@@ -155,9 +158,7 @@ Planned planPtp(const motion::RobotModel& model, const JointVector& start,
 
 Planned planPtp(const MovingFrame& frame, const JointVector& start, const Pose& base_from_tool,
                 const MotionLimits& limits) {
-    if (!finite(base_from_tool)) {
-        return fail(Errc::invalid_argument, "the target is not finite");
-    }
+    METIER_TRY(check(base_from_tool));
     const auto target = frame.model->kinematics().inverse(
         base_from_tool * frame.flange_from_tool.inverse(), {start, {}, {}});
     return target ? planPtp(*frame.model, start, *target, limits) : fail(target.error());
@@ -165,9 +166,7 @@ Planned planPtp(const MovingFrame& frame, const JointVector& start, const Pose& 
 
 Planned planLinear(const MovingFrame& frame, const JointVector& start, const Pose& base_from_tool,
                    const MotionLimits& limits) {
-    if (!finite(base_from_tool)) {
-        return fail(Errc::invalid_argument, "the target is not finite");
-    }
+    METIER_TRY(check(base_from_tool));
     METIER_TRY(check(limits));
     const Pose from = frame.model->kinematics().forward(start) * frame.flange_from_tool;
     const double length = std::max(motion::distanceBetween(from, base_from_tool), kNoWay);

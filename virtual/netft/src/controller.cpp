@@ -136,7 +136,6 @@ private:
     Result<void> openWeb(const ControllerRequest& request);
     void handle(const UdpPort::Endpoint& from, const Request& request);
     void serveWeb(TcpPeer& peer, std::span<const std::byte> bytes);
-    WebPages pages() const;
     void apply(const Change& change);
     int rate() const noexcept { return kSampleRate / samples_per_record_; }
     void cycle();
@@ -146,15 +145,12 @@ private:
     const std::string address_;
     const std::vector<InjectionHelp> injections_ = makeInjections();
     int samples_per_record_;  // the rate of the records
-    int buffer_size_;
-    bool rdt_enabled_ = true;
-    int filter_ = 0;
+    WebPages pages_;          // with the settings that a web client can change
     WorldLink& world_;
     std::optional<Sensor> sensor_;
     motion::Wrench extra_load_;
     std::uint32_t ft_sequence_ = 0;  // the sensor's own samples
     std::uint32_t records_to_lose_ = 0;
-    Sensor::Reading last_;
     std::optional<Stream> stream_;
     std::unique_ptr<UdpPort> udp_;
     std::unique_ptr<TcpServer> web_;
@@ -166,7 +162,10 @@ NetFtController::NetFtController(const ControllerRequest& request, Options optio
     : options_(std::move(options)),
       address_(request.address),
       samples_per_record_(samplesPerRecord(options_.rate)),
-      buffer_size_(options_.buffer_size),
+      pages_{.product = options_.product,
+             .address = address_,
+             .calibration = options_.calibration,
+             .buffer_size = options_.buffer_size},
       world_(request.world),
       sensor_(options_.calibration),
       timer_(request.context, period(samples_per_record_), [this] { cycle(); }) {}
@@ -177,7 +176,7 @@ Result<void> NetFtController::open(const ControllerRequest& request) {
                                       [this](const UdpPort::Endpoint& from,
                                              std::span<const std::byte> datagram) {
                                           const auto parsed = parseRequest(datagram);
-                                          if (parsed && rdt_enabled_) {
+                                          if (parsed && pages_.rdt_enabled) {
                                               handle(from, *parsed);
                                           }
                                       }));
@@ -205,24 +204,14 @@ void NetFtController::serveWeb(TcpPeer& peer, std::span<const std::byte> bytes) 
         request += static_cast<char>(byte);
     }
     if (request.find("\r\n\r\n") != std::string::npos || request.size() > kLongestWebRequest) {
-        const auto answer = answerWeb(request, pages());
+        pages_.gauge_bias = sensor_->gaugeBias();
+        pages_.rate = rate();
+        const auto answer = answerWeb(request, pages_);
         std::ranges::for_each(answer.changes, [this](const Change& change) { apply(change); });
         peer.send(answer.text);
         peer.close();
         request.resize(kLongestWebRequest + 1);
     }
-}
-
-WebPages NetFtController::pages() const {
-    return {.product = options_.product,
-            .address = address_,
-            .calibration = options_.calibration,
-            .reading = last_,
-            .gauge_bias = sensor_->gaugeBias(),
-            .rate = rate(),
-            .buffer_size = buffer_size_,
-            .rdt_enabled = rdt_enabled_,
-            .filter = filter_};
 }
 
 void NetFtController::apply(const Change& change) {
@@ -232,16 +221,16 @@ void NetFtController::apply(const Change& change) {
             timer_.setPeriod(period(samples_per_record_));
             break;
         case Setting::buffer_size:
-            buffer_size_ = change.value;
+            pages_.buffer_size = change.value;
             break;
         case Setting::rdt_enabled:
-            rdt_enabled_ = change.value != 0;
-            if (!rdt_enabled_) {
+            pages_.rdt_enabled = change.value != 0;
+            if (!pages_.rdt_enabled) {
                 stream_.reset();
             }
             break;
         case Setting::filter:
-            filter_ = change.value;
+            pages_.filter = change.value;
             break;
         case Setting::gauge_bias:
             sensor_->setGaugeBias(change.gauge, change.value);
@@ -257,7 +246,7 @@ void NetFtController::handle(const UdpPort::Endpoint& from, const Request& reque
         case Command::start_buffered:
         case Command::start_multi_unit: {
             const bool buffered = request.command == Command::start_buffered;
-            const auto size = static_cast<std::uint32_t>(buffered ? buffer_size_ : 1);
+            const auto size = static_cast<std::uint32_t>(buffered ? pages_.buffer_size : 1);
             stream_ = Stream{from, size, request.sample_count};
             break;
         }
@@ -279,9 +268,9 @@ void NetFtController::cycle() {
     motion::Wrench load = world_.effect().wrench;
     load.force += extra_load_.force;
     load.torque += extra_load_.torque;
-    last_ = sensor_->read(load);
+    pages_.reading = sensor_->read(load);
     if (stream_) {
-        stream(last_);
+        stream(pages_.reading);
     }
 }
 
@@ -352,8 +341,8 @@ nlohmann::ordered_json NetFtController::state() const {
         {"rate", rate()},
         {"client", stream_ ? client() : ""},
         {"records", stream_ ? stream_->sent : 0},
-        {"status", fmt::format("{:08x}", last_.status)},
-        {"counts", last_.counts},
+        {"status", fmt::format("{:08x}", pages_.reading.status)},
+        {"counts", pages_.reading.counts},
     };
 }
 

@@ -21,11 +21,7 @@
 namespace metier::virtual_ur {
 namespace {
 
-using virtual_controller::Controller;
-using virtual_controller::ControllerRequest;
-using virtual_controller::InjectionHelp;
-using virtual_controller::TcpPeer;
-using virtual_controller::TcpServer;
+using namespace virtual_controller;
 
 // A client that leaves more than this unread gets no further packages of a stream [bytes].
 constexpr std::size_t kMostUnread = 64'000;
@@ -92,7 +88,7 @@ private:
     std::map<TcpPeer*, std::string> lines_;  // bytes since the last line feed
     std::vector<Port> ports_;
     std::optional<Pacer> pacer_;
-    virtual_controller::StandingTime standing_;
+    StandingTime standing_;
 };
 
 Result<void> UrController::start() {

@@ -17,11 +17,7 @@
 namespace metier::virtual_world {
 namespace {
 
-using virtual_controller::Controller;
-using virtual_controller::ControllerRequest;
-using virtual_controller::InjectionHelp;
-using virtual_controller::TcpPeer;
-using virtual_controller::TcpServer;
+using namespace virtual_controller;
 
 class WorldServer final : public Controller {
 public:
@@ -59,8 +55,8 @@ public:
 
 private:
     void answer(TcpPeer& peer, std::string_view line) {
-        if (const auto report = virtual_controller::reportOf(line)) {
-            peer.send(virtual_controller::toLine(world_.report(report->name, report->report)));
+        if (const auto report = reportOf(line)) {
+            peer.send(toLine(world_.report(report->name, report->report)));
         } else {
             peer.reset();
         }
@@ -94,13 +90,13 @@ private:
     WorldOptions options_;
     World world_;
     std::unique_ptr<TcpServer> server_;
-    virtual_controller::PeerLines lines_;
+    PeerLines lines_;
 };
 
 Result<std::unique_ptr<Controller>> startWorld(const ControllerRequest& request) {
     auto options = readOptions(request.settings);
-    const auto port = static_cast<std::uint16_t>(
-        request.settings.numberOr("port", virtual_controller::RemoteWorld::kPort, 0, 65535));
+    const auto port =
+        static_cast<std::uint16_t>(request.settings.numberOr("port", RemoteWorld::kPort, 0, 65535));
     METIER_TRY(request.settings.finish());
     auto server = std::make_unique<WorldServer>(std::move(options));
     METIER_TRY(server->listen(request, port));
