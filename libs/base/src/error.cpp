@@ -1,47 +1,20 @@
 #include "metier/base/error.hpp"
 
+#include <array>
+
 namespace metier {
 
 std::string_view toString(Errc code) noexcept {
-    switch (code) {
-        case Errc::invalid_argument:
-            return "invalid_argument";
-        case Errc::type_mismatch:
-            return "type_mismatch";
-        case Errc::out_of_range:
-            return "out_of_range";
-        case Errc::unreachable:
-            return "unreachable";
-        case Errc::not_found:
-            return "not_found";
-        case Errc::already_exists:
-            return "already_exists";
-        case Errc::invalid_state:
-            return "invalid_state";
-        case Errc::locked:
-            return "locked";
-        case Errc::resource_unavailable:
-            return "resource_unavailable";
-        case Errc::access_denied:
-            return "access_denied";
-        case Errc::timeout:
-            return "timeout";
-        case Errc::connection_lost:
-            return "connection_lost";
-        case Errc::execution_lost:
-            return "execution_lost";
-        case Errc::device_fault:
-            return "device_fault";
-        case Errc::limit_violated:
-            return "limit_violated";
-        case Errc::not_supported:
-            return "not_supported";
-        case Errc::cancelled:
-            return "cancelled";
-        case Errc::internal:
-            return "internal";
-    }
-    return "unknown";
+    constexpr std::array<std::string_view, 18> kNames{
+        "invalid_argument", "type_mismatch", "out_of_range",
+        "unreachable",      "not_found",     "already_exists",
+        "invalid_state",    "locked",        "resource_unavailable",
+        "access_denied",    "timeout",       "connection_lost",
+        "execution_lost",   "device_fault",  "limit_violated",
+        "not_supported",    "cancelled",     "internal"};
+    static_assert(kNames.size() == static_cast<std::size_t>(Errc::internal) + 1);
+    const auto index = static_cast<std::size_t>(code);
+    return index < kNames.size() ? kNames[index] : "unknown";
 }
 
 }  // namespace metier
