@@ -66,14 +66,6 @@ Result<Pipe> makePipe() {
     return Pipe{ends[0], ends[1]};
 }
 
-int openProcessHandle(pid_t pid) {
-    return static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
-}
-
-int exitStatusOf(int status) {
-    return WIFSIGNALED(status) ? kSignalBase + WTERMSIG(status) : WEXITSTATUS(status);
-}
-
 }  // namespace
 
 Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command,
@@ -108,7 +100,8 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command
         }
         return fail(Errc::not_found, fmt::format("{}: {}", command.front(), std::strerror(error)));
     }
-    return ChildProcess(pid, output->read_end, openProcessHandle(pid));
+    const auto handle = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
+    return ChildProcess(pid, output->read_end, handle);
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
@@ -189,7 +182,7 @@ std::optional<int> ChildProcess::waitUntil(SteadyTime deadline) {
     }
     int status = 0;
     if (waitpid(pid_, &status, 0) == pid_) {
-        exit_status_ = exitStatusOf(status);
+        exit_status_ = WIFSIGNALED(status) ? kSignalBase + WTERMSIG(status) : WEXITSTATUS(status);
     }
     return exit_status_;
 }

@@ -2,8 +2,7 @@
 
 #include <netdb.h>
 
-#include <asio/ip/address_v4.hpp>
-#include <asio/ip/address_v6.hpp>
+#include <asio/ip/tcp.hpp>
 #include <cstring>
 #include <future>
 #include <list>
@@ -17,17 +16,11 @@ namespace {
 using asio::ip::address;
 using Found = Result<std::vector<address>>;
 
-address addressFrom(const sockaddr& native) {
-    if (native.sa_family == AF_INET) {
-        sockaddr_in v4{};
-        std::memcpy(&v4, &native, sizeof(v4));
-        return asio::ip::address_v4(ntohl(v4.sin_addr.s_addr));
-    }
-    sockaddr_in6 v6{};
-    std::memcpy(&v6, &native, sizeof(v6));
-    asio::ip::address_v6::bytes_type bytes{};
-    std::memcpy(bytes.data(), &v6.sin6_addr, bytes.size());
-    return asio::ip::address_v6(bytes, v6.sin6_scope_id);
+address addressFrom(const addrinfo& entry) {
+    asio::ip::tcp::endpoint endpoint;
+    endpoint.resize(entry.ai_addrlen);
+    std::memcpy(endpoint.data(), entry.ai_addr, entry.ai_addrlen);
+    return endpoint.address();
 }
 
 /// Waits for the name server, however long that takes.
@@ -42,7 +35,7 @@ Found lookUp(const std::string& host) {
     std::vector<address> found;
     for (const auto* entry = first; entry != nullptr; entry = entry->ai_next) {
         if (entry->ai_family == AF_INET || entry->ai_family == AF_INET6) {
-            found.push_back(addressFrom(*entry->ai_addr));
+            found.push_back(addressFrom(*entry));
         }
     }
     ::freeaddrinfo(first);

@@ -8,19 +8,14 @@
 #include <system_error>
 
 namespace metier::link {
-namespace {
-
-// Longest wait of one poll(); only a bound for its argument.
-constexpr auto kLongestPoll = std::chrono::milliseconds(60'000);
-
-}  // namespace
 
 Result<void> pollUntil(int descriptor, short events, SteadyTime deadline, const std::string& name) {
+    using std::chrono::milliseconds;
+    constexpr milliseconds kLongestPoll(60'000);  // only a bound for the argument of poll()
     for (;;) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(
-            deadline - std::chrono::steady_clock::now());
-        const auto wait =
-            std::clamp(left, std::chrono::milliseconds(0), std::chrono::milliseconds(kLongestPoll));
+        const auto left =
+            std::chrono::ceil<milliseconds>(deadline - std::chrono::steady_clock::now());
+        const auto wait = std::clamp(left, milliseconds(0), kLongestPoll);
         pollfd request{descriptor, events, 0};
         const int ready = ::poll(&request, 1, static_cast<int>(wait.count()));
         if (ready > 0) {

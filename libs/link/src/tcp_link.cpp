@@ -74,10 +74,6 @@ Result<TcpLink> TcpLink::connect(const std::string& host, std::uint16_t port, St
     return fail(last);
 }
 
-Result<void> TcpLink::waitFor(short events, SteadyTime deadline) {
-    return pollUntil(socket_.native_handle(), events, deadline, peer_);
-}
-
 Result<std::size_t> TcpLink::receive(std::span<std::byte> buffer, SteadyTime deadline) {
     for (;;) {
         asio::error_code error;
@@ -91,7 +87,7 @@ Result<std::size_t> TcpLink::receive(std::span<std::byte> buffer, SteadyTime dea
         if (error != asio::error::would_block && error != asio::error::interrupted) {
             return fail(Errc::connection_lost, peer_ + ": " + error.message());
         }
-        METIER_TRY(waitFor(POLLIN, deadline));
+        METIER_TRY(pollUntil(socket_.native_handle(), POLLIN, deadline, peer_));
     }
 }
 
@@ -114,7 +110,7 @@ Result<void> TcpLink::send(std::span<const std::byte> bytes, SteadyTime deadline
         if (error != asio::error::would_block) {
             return fail(Errc::connection_lost, peer_ + ": " + error.message());
         }
-        METIER_TRY(waitFor(POLLOUT, deadline));
+        METIER_TRY(pollUntil(socket_.native_handle(), POLLOUT, deadline, peer_));
     }
     return {};
 }

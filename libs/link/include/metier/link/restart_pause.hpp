@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace metier::link {
 
@@ -16,7 +18,10 @@ public:
 
     /// \param ran_for time from the program's start to its end
     /// \return time to wait before the next start
-    std::chrono::milliseconds next(std::chrono::nanoseconds ran_for) noexcept;
+    std::chrono::milliseconds next(std::chrono::nanoseconds ran_for) noexcept {
+        next_ = ran_for >= kProven ? kShortest : next_;
+        return std::exchange(next_, std::min(2 * next_, kLongest));
+    }
 
 private:
     std::chrono::milliseconds next_ = kShortest;

@@ -50,8 +50,6 @@ private:
     friend class TcpListener;
     TcpLink(std::unique_ptr<asio::io_context> context, asio::ip::tcp::socket socket,
             std::string peer);
-    /// \param events events of poll(2) to wait for
-    Result<void> waitFor(short events, SteadyTime deadline);
 
     std::unique_ptr<asio::io_context> context_;  // context of the socket; must outlive it
     asio::ip::tcp::socket socket_;
