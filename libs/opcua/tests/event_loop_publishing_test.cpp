@@ -167,14 +167,6 @@ TEST(EventLoopPublishing, FollowsASubscriptionWhoseIntervalIsModified) {
     ASSERT_TRUE(client.runUntil([&] { return client.events().size() == 1; }));
 }
 
-TEST(EventLoopPublishing, WaitsForTheIntervalWhenToldTo) {
-    TestServer server({.loop = {.publishing = Publishing::at_interval}});
-    const auto client = subscribed(server, {.publishing_interval_ms = 200});
-    ASSERT_TRUE(client->fire());
-    ASSERT_TRUE(client->runUntil([&] { return client->events().size() == 1; }));
-    EXPECT_EQ(server.statistics().flushes, 0);
-}
-
 }  // namespace
 
 }  // namespace metier::opcua::testing

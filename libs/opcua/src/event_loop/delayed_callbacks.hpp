@@ -16,7 +16,15 @@ public:
     bool empty() const { return queue_.empty(); }
     /// Calls, oldest first, those that wait now; what they add waits for the next run.
     /// A callback may remove others, and free its own memory.
-    void run();
+    void run() {
+        for (auto left = queue_.size(); left > 0 && !queue_.empty(); --left) {
+            const auto* delayed = queue_.front();
+            queue_.pop_front();
+            if (delayed->callback != nullptr) {
+                delayed->callback(delayed->application, delayed->context);
+            }
+        }
+    }
 
 private:
     std::deque<UA_DelayedCallback*> queue_;

@@ -22,12 +22,6 @@ class Loop;
 /// A TCP connection of the loop; never used again for another. 0: none.
 using ConnectionId = std::uintptr_t;
 
-/// Time at which notifications of events leave the server.
-enum class Publishing {
-    at_once,      ///< as soon as flushPublishing() asks for it
-    at_interval,  ///< strictly at the Subscription's publishing interval; flushPublishing() is void
-};
-
 struct EventLoopOptions {
     std::size_t send_queue_limit = std::size_t{8} << 20U;  ///< [byte] per peer, beyond: cut
     std::chrono::milliseconds stall_limit{2000};  ///< a peer that takes nothing so long is cut
@@ -37,8 +31,7 @@ struct EventLoopOptions {
     /// Longest time until a peer must be admitted; a stranger is closed earlier if its place is
     /// needed. 0: every peer counts as admitted.
     std::chrono::milliseconds stranger_limit{0};
-    int kernel_send_buffer = 0;  ///< [byte] SO_SNDBUF, 0: as the kernel chooses
-    Publishing publishing = Publishing::at_once;
+    int kernel_send_buffer = 0;         ///< [byte] SO_SNDBUF, 0: as the kernel chooses
     const UA_Logger* logger = nullptr;  ///< must outlive the loop; none: silent
 };
 

@@ -1,17 +1,16 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "chunk_reader.hpp"
+
 namespace metier::opcua {
 
 /// Data that a peer has sent and the stack has not got yet, in pieces that end with a chunk at the
 /// latest: so the loop can serve other connections between two messages that came together.
-///
-/// Only the size in each chunk's header is read (OPC 10000-6, 6.7.2.2); it is never encrypted.
 class Inbox {
 public:
     void push(std::span<const std::uint8_t> bytes);
@@ -23,16 +22,9 @@ public:
     void done();
 
 private:
-    static constexpr std::size_t kHeader = 8;
-
-    std::size_t sizeOfNext();
-    std::size_t bodySize() const;
-
     std::vector<std::uint8_t> bytes_;
     std::size_t taken_ = 0;
-    std::array<std::uint8_t, kHeader> header_{};
-    std::size_t header_filled_ = 0;
-    std::size_t body_left_ = 0;
+    ChunkReader chunks_;
 };
 
 }  // namespace metier::opcua

@@ -75,19 +75,11 @@ Result<> listenOn(asio::io_context& io, const std::string& host, std::uint16_t& 
 
 }  // namespace
 
-Listener::Listener(ConnectionId id, asio::ip::tcp::acceptor acceptor, Application application,
-                   ListenAddress address)
-    : id_(id),
-      acceptor_(std::move(acceptor)),
-      timer_(acceptor_.get_executor()),
-      application_(application),
-      address_(std::move(address)) {}
-
 void Listener::close() {
-    closing_ = true;
+    closing = true;
     asio::error_code ignored;  // nothing more can be done
-    acceptor_.close(ignored);
-    timer_.cancel();
+    acceptor.close(ignored);
+    timer.cancel();
 }
 
 Result<std::vector<OpenAcceptor>> openAcceptors(asio::io_context& io,

@@ -16,27 +16,16 @@ namespace metier::opcua {
 /// It can be opened while connections of an earlier process on the same port still linger, and
 /// never shares its port with another listening socket.
 /// Threading: under the loop's mutex.
-class Listener {
-public:
-    Listener(ConnectionId id, asio::ip::tcp::acceptor acceptor, Application application,
-             ListenAddress address);
-
-    ConnectionId id() const { return id_; }
-    asio::ip::tcp::acceptor& acceptor() { return acceptor_; }
-    asio::steady_timer& timer() { return timer_; }
-    Application& application() { return application_; }
-    const ListenAddress& address() const { return address_; }
-    bool closing() const { return closing_; }
+struct Listener {
     /// Closes the socket. The manager notifies the application later.
     void close();
 
-private:
-    ConnectionId id_;
-    asio::ip::tcp::acceptor acceptor_;
-    asio::steady_timer timer_;  ///< pause before accepting is tried again
-    Application application_;
-    ListenAddress address_;
-    bool closing_ = false;
+    ConnectionId id;
+    asio::ip::tcp::acceptor acceptor;
+    Application application;
+    ListenAddress address;
+    asio::steady_timer timer{acceptor.get_executor()};  ///< pause before accepting is tried again
+    bool closing = false;
 };
 
 struct OpenAcceptor {

@@ -20,8 +20,7 @@ constexpr std::chrono::microseconds kLongestCoalescing{100};
 
 }  // namespace
 
-Loop::Loop(EventLoopOptions options)
-    : options_(options), publisher_(options.publishing), tcp_(reactor_, publisher_, options_) {
+Loop::Loop(EventLoopOptions options) : options_(options), tcp_(reactor_, publisher_, options_) {
     handle_.loop = this;
     handle_.logger = options_.logger;
     handle_.params = &parameters_;
@@ -133,28 +132,6 @@ void Loop::addDelayed(UA_DelayedCallback* callback) {
     reactor_.wake();
 }
 
-void Loop::post(std::function<void()> work) {
-    asio::post(reactor_.io(), reactor_.guarded(std::move(work)));
-}
-
-void Loop::flushPublishing(std::span<const ConnectionId> connections) {
-    publisher_.request(connections, std::chrono::steady_clock::now());
-    reactor_.wake();
-}
-
-EventLoopStatistics Loop::statistics() {
-    EventLoopStatistics statistics;
-    tcp_.addTo(statistics);
-    statistics.flushes = publisher_.flushes();
-    statistics.fruitless_flushes = publisher_.fruitless();
-    statistics.iterations = iterations_;
-    return statistics;
-}
-
-SteadyTime Loop::lastIteration() const {
-    return SteadyTime(SteadyTime::duration(last_iteration_.load(std::memory_order_relaxed)));
-}
-
 SteadyTime Loop::stamp() {
     const auto now = std::chrono::steady_clock::now();
     last_iteration_.store(now.time_since_epoch().count(), std::memory_order_relaxed);
@@ -227,6 +204,88 @@ void Loop::checkStopped() {
     }
     tcp_.handle()->eventSource.state = UA_EVENTSOURCESTATE_STOPPED;
     setState(UA_EVENTLOOPSTATE_STOPPED);
+}
+
+AsioEventLoop::AsioEventLoop(EventLoopOptions options) : loop_(std::make_unique<Loop>(options)) {}
+
+AsioEventLoop::~AsioEventLoop() = default;
+
+UA_EventLoop* AsioEventLoop::handle() noexcept {
+    return loop_->handle();
+}
+
+void AsioEventLoop::post(std::function<void()> work) {
+    asio::post(loop_->reactor_.io(), loop_->reactor_.guarded(std::move(work)));
+}
+
+Result<> AsioEventLoop::runOnce(std::chrono::milliseconds timeout) {
+    const auto status = loop_->run(timeout);
+    if (status == UA_STATUSCODE_GOOD) {
+        return {};
+    }
+    return fail(Errc::internal, std::string("the event loop: ") + UA_StatusCode_name(status));
+}
+
+ConnectionId AsioEventLoop::currentConnection() const noexcept {
+    return loop_->tcp().currentAccepted();
+}
+
+void AsioEventLoop::vouchFor(ConnectionId connection) {
+    const auto held = loop_->lock();
+    loop_->tcp().vouchFor(connection);
+}
+
+void AsioEventLoop::admit(ConnectionId connection) {
+    const auto held = loop_->lock();
+    loop_->tcp().admit(connection);
+}
+
+void AsioEventLoop::dismiss(ConnectionId connection) {
+    const auto held = loop_->lock();
+    loop_->tcp().dismiss(connection);
+}
+
+std::chrono::nanoseconds AsioEventLoop::workOnTurn() const {
+    return loop_->tcp().workOnTurn();
+}
+
+void AsioEventLoop::flushPublishing(std::span<const ConnectionId> connections) {
+    const auto held = loop_->lock();
+    loop_->publisher_.request(connections, std::chrono::steady_clock::now());
+    loop_->reactor_.wake();
+}
+
+void AsioEventLoop::dropOpened() {
+    const auto held = loop_->lock();
+    loop_->tcp().dropOpened();
+}
+
+const TimeHistogram& AsioEventLoop::publishLatency() const noexcept {
+    return loop_->publisher_.latency();
+}
+
+EventLoopStatistics AsioEventLoop::statistics() const {
+    const auto held = loop_->lock();
+    auto statistics = loop_->tcp_.statistics();
+    statistics.flushes = loop_->publisher_.flushes();
+    statistics.fruitless_flushes = loop_->publisher_.fruitless();
+    statistics.iterations = loop_->iterations_;
+    return statistics;
+}
+
+std::vector<ListenAddress> AsioEventLoop::listening() const {
+    const auto held = loop_->lock();
+    return loop_->tcp().listening();
+}
+
+std::string AsioEventLoop::lastNetworkError() const {
+    const auto held = loop_->lock();
+    return loop_->tcp().lastError();
+}
+
+SteadyTime AsioEventLoop::lastIteration() const noexcept {
+    const auto last = loop_->last_iteration_.load(std::memory_order_relaxed);
+    return SteadyTime(SteadyTime::duration(last));
 }
 
 }  // namespace metier::opcua

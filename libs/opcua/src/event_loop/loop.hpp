@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 
 #include "delayed_callbacks.hpp"
 #include "event_loop.hpp"
@@ -39,19 +38,14 @@ public:
     void addDelayed(UA_DelayedCallback* callback);
     void removeDelayed(UA_DelayedCallback* callback) { delayed_.remove(callback); }
 
-    void post(std::function<void()> work);
-    void flushPublishing(std::span<const ConnectionId> connections);
-    EventLoopStatistics statistics();
-    const TcpConnectionManager& tcp() const { return tcp_; }
     TcpConnectionManager& tcp() { return tcp_; }
-    SteadyTime lastIteration() const;
-    const TimeHistogram& publishLatency() const { return publisher_.latency(); }
 
 private:
     struct Handle : UA_EventLoop {
         Loop* loop = nullptr;
     };
     friend struct LoopInterface;
+    friend class AsioEventLoop;  // its outside
 
     SteadyTime stamp();
     void setState(UA_EventLoopState state);

@@ -33,12 +33,12 @@ SteadyTime firstCycle(const UA_DateTime* base, std::chrono::nanoseconds interval
     return base == nullptr ? now + interval : nextCycle(now, toSteady(*base), interval);
 }
 
-/// Runs `work` on the handle's loop, under its mutex.
+/// Runs `work` on the handle's loop, under its mutex. It returns nothing or a StatusCode.
 template <typename Work>
 UA_StatusCode under(Loop& loop, Work work) noexcept {
     return guard(loop.handle()->logger, [&] {
         const auto held = loop.lock();
-        work(loop);
+        return work(loop);
     });
 }
 
@@ -66,12 +66,11 @@ UA_StatusCode modifyCyclic(UA_EventLoop* handle, UA_UInt64 id, UA_Double interva
     if (!interval) {
         return UA_STATUSCODE_BADINTERNALERROR;
     }
-    bool found = false;
-    const auto result = under(LoopInterface::of(handle), [&](Loop& loop) {
-        found = loop.modifyTimer({.interval = *interval, .policy = policy, .id = id},
-                                 firstCycle(base, *interval));
+    return under(LoopInterface::of(handle), [&](Loop& loop) {
+        const bool found = loop.modifyTimer({.interval = *interval, .policy = policy, .id = id},
+                                            firstCycle(base, *interval));
+        return found ? UA_STATUSCODE_GOOD : UA_STATUSCODE_BADNOTFOUND;
     });
-    return result != UA_STATUSCODE_GOOD || found ? result : UA_STATUSCODE_BADNOTFOUND;
 }
 
 // NOLINTNEXTLINE(readability-function-size): the interface's parameters
@@ -100,10 +99,7 @@ UA_DateTime nextCyclicTime(UA_EventLoop* handle) noexcept {
 
 void fillLifecycle(UA_EventLoop& handle) {
     handle.start = [](UA_EventLoop* self) noexcept {
-        UA_StatusCode started = UA_STATUSCODE_GOOD;
-        const auto result =
-            under(LoopInterface::of(self), [&](Loop& loop) { started = loop.start(); });
-        return result != UA_STATUSCODE_GOOD ? result : started;
+        return under(LoopInterface::of(self), [](Loop& loop) { return loop.start(); });
     };
     handle.stop = [](UA_EventLoop* self) noexcept {
         under(LoopInterface::of(self), [](Loop& loop) { loop.stop(); });
@@ -112,10 +108,7 @@ void fillLifecycle(UA_EventLoop& handle) {
         return LoopInterface::of(self).run(std::chrono::milliseconds(timeout_ms));
     };
     handle.free = [](UA_EventLoop* self) noexcept {
-        UA_StatusCode released = UA_STATUSCODE_GOOD;
-        const auto result =
-            under(LoopInterface::of(self), [&](Loop& loop) { released = loop.release(); });
-        return result != UA_STATUSCODE_GOOD ? result : released;
+        return under(LoopInterface::of(self), [](Loop& loop) { return loop.release(); });
     };
     handle.lock = [](UA_EventLoop* self) noexcept { LoopInterface::of(self).mutex().lock(); };
     handle.unlock = [](UA_EventLoop* self) noexcept { LoopInterface::of(self).mutex().unlock(); };
@@ -167,11 +160,11 @@ void fillEventSource(UA_EventSource& source, UA_EventLoop& handle) {
 UA_StatusCode open(UA_ConnectionManager* manager, const UA_KeyValueMap* parameters,
                    void* application, void* context,
                    UA_ConnectionManager_connectionCallback callback) noexcept {
-    bool opened = false;
-    const auto result = under(LoopInterface::of(manager), [&](Loop& loop) {
-        opened = loop.tcp().open(parameters, {callback, application, context}).has_value();
+    return under(LoopInterface::of(manager), [&](Loop& loop) {
+        return loop.tcp().open(parameters, {callback, application, context})
+                   ? UA_STATUSCODE_GOOD
+                   : UA_STATUSCODE_BADCONNECTIONREJECTED;
     });
-    return result != UA_STATUSCODE_GOOD || opened ? result : UA_STATUSCODE_BADCONNECTIONREJECTED;
 }
 
 }  // namespace
@@ -189,15 +182,10 @@ void LoopInterface::fill(UA_ConnectionManager& manager, UA_EventLoop& handle) {
     manager.openConnection = open;
     manager.sendWithConnection = [](UA_ConnectionManager* self, uintptr_t id, const UA_KeyValueMap*,
                                     UA_ByteString* buffer) noexcept {
-        UA_StatusCode sent = UA_STATUSCODE_GOOD;
-        const auto result =
-            under(of(self), [&](Loop& loop) { sent = loop.tcp().send(id, buffer); });
-        return result != UA_STATUSCODE_GOOD ? result : sent;
+        return under(of(self), [&](Loop& loop) { return loop.tcp().send(id, buffer); });
     };
     manager.closeConnection = [](UA_ConnectionManager* self, uintptr_t id) noexcept {
-        UA_StatusCode closed = UA_STATUSCODE_GOOD;
-        const auto result = under(of(self), [&](Loop& loop) { closed = loop.tcp().close(id); });
-        return result != UA_STATUSCODE_GOOD ? result : closed;
+        return under(of(self), [&](Loop& loop) { return loop.tcp().close(id); });
     };
     manager.allocNetworkBuffer = [](UA_ConnectionManager*, uintptr_t, UA_ByteString* buffer,
                                     size_t size) noexcept {

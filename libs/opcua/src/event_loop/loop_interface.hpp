@@ -5,6 +5,7 @@
 
 #include <exception>
 #include <new>
+#include <type_traits>
 
 #include "loop.hpp"
 
@@ -19,11 +20,16 @@ struct LoopInterface {
 };
 
 /// Runs `work` and turns what it throws into a StatusCode: the only place that does.
+/// \param work returns nothing or a StatusCode
 template <typename Work>
 UA_StatusCode guard(const UA_Logger* logger, Work work) noexcept {
     try {
-        work();
-        return UA_STATUSCODE_GOOD;
+        if constexpr (std::is_void_v<decltype(work())>) {
+            work();
+            return UA_STATUSCODE_GOOD;
+        } else {
+            return work();
+        }
     } catch (const std::bad_alloc&) {
         return UA_STATUSCODE_BADOUTOFMEMORY;
     } catch (const std::exception& error) {

@@ -1,32 +1,30 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "chunk_reader.hpp"
+
 namespace metier::opcua {
 
 /// Counts the service messages of a stream of OPC UA chunks, which may be cut anywhere.
-///
-/// Only the 8 bytes of each chunk's message header are read; they are never encrypted.
-/// Source: OPC 10000-6, 6.7.2.2 Message Header (MessageType, IsFinal, MessageSize).
 class MessageCounter {
 public:
     /// \return how many service messages ("MSG", final or aborted chunk) end within `bytes`.
     ///         A malformed size ends the counting: the stack closes such a connection.
-    std::size_t feed(std::span<const std::uint8_t> bytes);
+    std::size_t feed(std::span<const std::uint8_t> bytes) {
+        std::size_t messages = 0;
+        while (!bytes.empty()) {
+            bytes = bytes.subspan(chunks_.take(bytes));
+            const auto type = chunks_.type();
+            messages += chunks_.atEnd() && type.starts_with("MSG") && !type.ends_with('C') ? 1 : 0;
+        }
+        return messages;
+    }
 
 private:
-    static constexpr std::size_t kHeaderSize = 8;
-
-    void readHeader();
-
-    std::array<std::uint8_t, kHeaderSize> header_{};
-    std::size_t header_filled_ = 0;
-    std::size_t body_left_ = 0;
-    bool ends_message_ = false;
-    bool malformed_ = false;
+    ChunkReader chunks_;
 };
 
 }  // namespace metier::opcua

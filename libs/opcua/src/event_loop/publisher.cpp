@@ -65,7 +65,7 @@ void Publisher::sent(ConnectionId connection, std::span<const std::uint8_t> chun
 }
 
 void Publisher::request(std::span<const ConnectionId> connections, SteadyTime now) {
-    if (mode_ == Publishing::at_interval || connections.empty()) {
+    if (connections.empty()) {
         return;
     }
     std::vector<ConnectionId> sorted(connections.begin(), connections.end());

@@ -21,8 +21,6 @@ namespace metier::opcua {
 /// Threading: under the loop's mutex.
 class Publisher {
 public:
-    explicit Publisher(Publishing mode) : mode_(mode) {}
-
     /// \param during the accepted connection whose message is processed, or 0
     void timerAdded(const Timer& timer, ConnectionId during);
     void timerRemoved(TimerId id) { subscriptions_.erase(id); }
@@ -65,7 +63,6 @@ private:
     bool canPublish(const Subscription& subscription, SteadyTime now);
     void publishNow(TimerId id, SteadyTime now, SteadyTime requested);
 
-    Publishing mode_;
     UA_Callback publish_callback_ = nullptr;
     std::unordered_map<TimerId, Subscription> subscriptions_;
     std::unordered_map<ConnectionId, Peer> peers_;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <open62541/types.h>
+#include <open62541/types_generated.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <span>
 
 namespace metier::opcua {
@@ -13,19 +15,23 @@ namespace metier::opcua {
 class NetworkBuffer {
 public:
     /// Takes the memory over: `bytes` is empty afterwards.
-    explicit NetworkBuffer(UA_ByteString* bytes);
-    NetworkBuffer(NetworkBuffer&& other) noexcept;
-    NetworkBuffer& operator=(NetworkBuffer&& other) noexcept;
-    NetworkBuffer(const NetworkBuffer&) = delete;
-    NetworkBuffer& operator=(const NetworkBuffer&) = delete;
-    ~NetworkBuffer();
+    explicit NetworkBuffer(UA_ByteString* bytes)
+        : memory_(bytes->data), unsent_(bytes->data, bytes->length) {
+        UA_ByteString_init(bytes);
+    }
 
-    std::span<const std::uint8_t> unsent() const;
-    void consume(std::size_t sent) { sent_ += sent; }
+    std::span<const std::uint8_t> unsent() const { return unsent_; }
+    void consume(std::size_t sent) { unsent_ = unsent_.subspan(sent); }
 
 private:
-    UA_ByteString bytes_{};
-    std::size_t sent_ = 0;
+    struct Free {
+        void operator()(UA_Byte* memory) const {
+            UA_Array_delete(memory, 0, &UA_TYPES[UA_TYPES_BYTE]);
+        }
+    };
+
+    std::unique_ptr<UA_Byte, Free> memory_;
+    std::span<const std::uint8_t> unsent_;
 };
 
 /// Data that a peer has not read yet.

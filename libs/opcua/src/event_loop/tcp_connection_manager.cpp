@@ -133,21 +133,19 @@ bool TcpConnectionManager::deliverLeftovers() {
     return !with_leftovers.empty();
 }
 
-void TcpConnectionManager::addTo(EventLoopStatistics& statistics) const {
+EventLoopStatistics TcpConnectionManager::statistics() const {
+    auto statistics = counts_;
     statistics.connections = connections_.size();
     for (const auto& [id, connection] : connections_) {
         statistics.queued_bytes += connection->queuedBytes();
     }
-    statistics.accepted = counts_.accepted;
-    statistics.refused = counts_.refused;
-    statistics.dropped_strangers = counts_.dropped_strangers;
-    statistics.cut_peers = counts_.cut_peers;
+    return statistics;
 }
 
 std::vector<ListenAddress> TcpConnectionManager::listening() const {
     std::vector<ListenAddress> addresses;
     for (const auto& [id, listener] : listeners_) {
-        addresses.push_back(listener->address());
+        addresses.push_back(listener->address);
     }
     return addresses;
 }

@@ -60,7 +60,8 @@ public:
     void dismiss(ConnectionId id);
 
     ConnectionId currentAccepted() const { return current_accepted_; }
-    void addTo(EventLoopStatistics& statistics) const;
+    /// The loop's own figures are 0.
+    EventLoopStatistics statistics() const;
     std::vector<ListenAddress> listening() const;
     const std::string& lastError() const { return last_error_; }
 

@@ -53,25 +53,26 @@ void TcpConnectionManager::announce(OpenAcceptor open, const Application& applic
                                                                   application, open.address))
                           .first->second;
     asio::error_code ignored;  // without the machine's name its address is announced empty
-    CallbackParameters parameters;
-    parameters
-        .address("listen-address",
-                 open.address.address.empty() ? asio::ip::host_name(ignored) : open.address.address)
-        .port("listen-port", open.address.port);
-    auto& told = listener.application();
+    const auto host =
+        open.address.address.empty() ? asio::ip::host_name(ignored) : open.address.address;
+    UA_String address = asStackString(host);
+    std::array pairs{parameterOf("listen-address", address),
+                     parameterOf("listen-port", open.address.port)};
+    const UA_KeyValueMap parameters{pairs.size(), pairs.data()};
+    auto& told = listener.application;
     told.callback(&handle_, id, told.application, &told.context, UA_CONNECTIONSTATE_ESTABLISHED,
-                  &parameters.map(), UA_BYTESTRING_NULL);
+                  &parameters, UA_BYTESTRING_NULL);
     UA_LOG_INFO(options_.logger, UA_LOGCATEGORY_NETWORK, "TCP %lu | listens on \"%s\", port %u",
                 static_cast<unsigned long>(id), open.address.address.c_str(),
                 static_cast<unsigned>(open.address.port));
-    if (!listener.closing()) {
+    if (!listener.closing) {
         accept(listener);
     }
 }
 
 void TcpConnectionManager::accept(Listener& listener) {
-    listener.acceptor().async_accept(reactor_.guarded(
-        [this, id = listener.id()](const asio::error_code& error, tcp::socket socket) {
+    listener.acceptor.async_accept(reactor_.guarded(
+        [this, id = listener.id](const asio::error_code& error, tcp::socket socket) {
             onAccepted(id, error, std::move(socket));
         }));
 }
@@ -79,26 +80,25 @@ void TcpConnectionManager::accept(Listener& listener) {
 void TcpConnectionManager::onAccepted(ConnectionId id, const asio::error_code& error,
                                       tcp::socket socket) {
     const auto found = listeners_.find(id);
-    if (found == listeners_.end() || found->second->closing()) {
+    if (found == listeners_.end() || found->second->closing) {
         return;
     }
     auto& listener = *found->second;
     if (!error) {
         startAccepted(listener, std::move(socket));
     }
-    if (listener.closing()) {
+    if (listener.closing) {
         return;
     }
     if (!error || error == asio::error::connection_aborted) {
         accept(listener);
         return;
     }
-    note("cannot accept on port " + std::to_string(listener.address().port) + ": " +
-         error.message());
-    listener.timer().expires_after(kAcceptRetry);
-    listener.timer().async_wait(reactor_.guarded([this, id](const asio::error_code& cancelled) {
+    note("cannot accept on port " + std::to_string(listener.address.port) + ": " + error.message());
+    listener.timer.expires_after(kAcceptRetry);
+    listener.timer.async_wait(reactor_.guarded([this, id](const asio::error_code& cancelled) {
         const auto again = listeners_.find(id);
-        if (!cancelled && again != listeners_.end() && !again->second->closing()) {
+        if (!cancelled && again != listeners_.end() && !again->second->closing) {
             accept(*again->second);
         }
     }));
@@ -116,17 +116,17 @@ void TcpConnectionManager::startAccepted(Listener& listener, tcp::socket socket)
     if (gone) {
         return;
     }
-    auto& connection = add(std::move(socket), listener.application(), Origin::accepted);
+    auto& connection = add(std::move(socket), listener.application, Origin::accepted);
     connection.address = remote.address().to_string();
     publisher_.accepted(connection.id());
     ++counts_.accepted;
     beginAsStranger(connection);
-    CallbackParameters parameters;
-    parameters.address("remote-address", connection.address);
+    UA_String address = asStackString(connection.address);
+    auto parameter = parameterOf("remote-address", address);
     if (connection.configure(options_.kernel_send_buffer)) {
         closeLater(connection);
     }
-    tell(connection, UA_CONNECTIONSTATE_ESTABLISHED, parameters.map(), UA_BYTESTRING_NULL);
+    tell(connection, UA_CONNECTIONSTATE_ESTABLISHED, {1, &parameter}, UA_BYTESTRING_NULL);
     if (!connection.closing()) {
         awaitReadable(connection);
     }
@@ -223,11 +223,11 @@ void TcpConnectionManager::onConnected(ConnectionId id) {
 }
 
 void TcpConnectionManager::closeListener(Listener& listener) {
-    if (listener.closing()) {
+    if (listener.closing) {
         return;
     }
     listener.close();
-    asio::post(reactor_.io(), reactor_.guarded([this, id = listener.id()] { finishListener(id); }));
+    asio::post(reactor_.io(), reactor_.guarded([this, id = listener.id] { finishListener(id); }));
 }
 
 void TcpConnectionManager::finishListener(ConnectionId id) {
@@ -237,7 +237,7 @@ void TcpConnectionManager::finishListener(ConnectionId id) {
     }
     const auto listener = std::move(found->second);
     listeners_.erase(found);
-    auto& told = listener->application();
+    auto& told = listener->application;
     told.callback(&handle_, id, told.application, &told.context, UA_CONNECTIONSTATE_CLOSING,
                   &UA_KEYVALUEMAP_NULL, UA_BYTESTRING_NULL);
 }

@@ -8,14 +8,14 @@ namespace metier::opcua {
 
 namespace {
 
-/// The stack's strings are bytes and never const; it does not change these.
-UA_String viewOf(std::string_view text) {
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-*-cast): see above
-    return {text.size(), reinterpret_cast<UA_Byte*>(const_cast<char*>(text.data()))};
+UA_KeyValuePair parameterOf(const char* key, void* value, std::size_t type) {
+    UA_KeyValuePair pair{{0, asStackString(key)}, {}};
+    UA_Variant_setScalar(&pair.value, value, &UA_TYPES[type]);
+    return pair;
 }
 
 UA_QualifiedName keyOf(const char* name) {
-    return {0, viewOf(name)};
+    return {0, asStackString(name)};
 }
 
 bool readFlag(const UA_KeyValueMap* map, const char* name) {
@@ -59,24 +59,17 @@ Result<TcpParameters> readTcpParameters(const UA_KeyValueMap* map) {
     return parameters;
 }
 
-CallbackParameters& CallbackParameters::address(const char* key, std::string value) {
-    address_ = std::move(value);
-    address_view_ = viewOf(address_);
-    auto& pair = pairs_.emplace_back(UA_KeyValuePair{keyOf(key), {}});
-    UA_Variant_setScalar(&pair.value, &address_view_, &UA_TYPES[UA_TYPES_STRING]);
-    return *this;
+UA_KeyValuePair parameterOf(const char* key, UA_String& value) {
+    return parameterOf(key, &value, UA_TYPES_STRING);
 }
 
-CallbackParameters& CallbackParameters::port(const char* key, std::uint16_t value) {
-    port_ = value;
-    auto& pair = pairs_.emplace_back(UA_KeyValuePair{keyOf(key), {}});
-    UA_Variant_setScalar(&pair.value, &port_, &UA_TYPES[UA_TYPES_UINT16]);
-    return *this;
+UA_KeyValuePair parameterOf(const char* key, UA_UInt16& value) {
+    return parameterOf(key, &value, UA_TYPES_UINT16);
 }
 
-const UA_KeyValueMap& CallbackParameters::map() {
-    map_ = {pairs_.size(), pairs_.data()};
-    return map_;
+UA_String asStackString(std::string_view text) {
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-*-cast): see the header
+    return {text.size(), reinterpret_cast<UA_Byte*>(const_cast<char*>(text.data()))};
 }
 
 }  // namespace metier::opcua

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "metier/base/error.hpp"
@@ -23,19 +24,11 @@ struct TcpParameters {
 /// Errors: invalid_argument (no port, an address that is no string, nowhere to connect to).
 Result<TcpParameters> readTcpParameters(const UA_KeyValueMap* map);
 
-/// The parameters of a callback, each a string or a port number; valid while the object lives.
-class CallbackParameters {
-public:
-    CallbackParameters& address(const char* key, std::string value);
-    CallbackParameters& port(const char* key, std::uint16_t value);
-    const UA_KeyValueMap& map();
+/// A parameter of a callback; valid as long as key and value.
+UA_KeyValuePair parameterOf(const char* key, UA_String& value);
+UA_KeyValuePair parameterOf(const char* key, UA_UInt16& value);
 
-private:
-    std::string address_;
-    UA_String address_view_{};
-    std::uint16_t port_ = 0;
-    std::vector<UA_KeyValuePair> pairs_;
-    UA_KeyValueMap map_{};
-};
+/// The stack's strings are bytes and never const; it does not change these.
+UA_String asStackString(std::string_view text);
 
 }  // namespace metier::opcua

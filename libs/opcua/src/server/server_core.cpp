@@ -22,9 +22,6 @@ EventLoopOptions loopOptions(const ServerOptions& options, const UA_Logger* logg
     EventLoopOptions result;
     result.max_connections = options.limits.secure_channels;
     result.stranger_limit = options.limits.handshake_timeout;
-    result.publishing = options.event_publishing == EventPublishing::at_once
-                            ? Publishing::at_once
-                            : Publishing::at_interval;
     result.logger = logger;
     return result;
 }
