@@ -14,7 +14,7 @@ Answer<> Questions::next() {
         failureOf(Errc::timeout, "the server goes on telling of more than anybody would look at"));
 }
 
-Answer<std::vector<opcua::ReferenceDescription>> Questions::browse(opcua::BrowseQuery query) {
+Answer<std::vector<opcua::Reference>> Questions::browse(opcua::BrowseQuery query) {
     METIER_TRY(next());
     return client_.browse(std::move(query));
 }

@@ -27,7 +27,7 @@ class Questions {
 public:
     explicit Questions(opcua::Client& client) : client_(client) {}
 
-    opcua::Answer<std::vector<opcua::ReferenceDescription>> browse(opcua::BrowseQuery query);
+    opcua::Answer<std::vector<opcua::Reference>> browse(opcua::BrowseQuery query);
     opcua::Answer<opcua::Value> read(const opcua::NodeId& node,
                                      opcua::AttributeId attribute = opcua::AttributeId::value);
     opcua::Answer<std::vector<opcua::DataValue>> readMany(std::vector<opcua::ReadItem> items);

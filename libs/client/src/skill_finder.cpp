@@ -20,7 +20,7 @@ using opcua::BrowseQuery;
 using opcua::Client;
 using opcua::NodeClass;
 using opcua::NodeId;
-using opcua::ReferenceDescription;
+using opcua::Reference;
 using opcua::sanitise;
 
 constexpr std::size_t kMaxDepth = 12;
@@ -45,7 +45,7 @@ public:
     std::vector<SkillAddress> found;
 
 private:
-    Answer<> visit(const ReferenceDescription& child, std::vector<SkillAddress::Above>& above) {
+    Answer<> visit(const Reference& child, std::vector<SkillAddress::Above>& above) {
         if (child.target == opcua::ids::kServer || !seen_.insert(child.target).second) {
             return {};
         }
@@ -59,7 +59,7 @@ private:
         return walked;
     }
 
-    Answer<> add(const ReferenceDescription& skill, const std::vector<SkillAddress::Above>& above) {
+    Answer<> add(const Reference& skill, const std::vector<SkillAddress::Above>& above) {
         METIER_ASSIGN(const auto type_name,
                       questions_.read(skill.type_definition, opcua::AttributeId::browse_name));
         const auto type = type_name.as<opcua::QualifiedName>().value_or(opcua::QualifiedName{});

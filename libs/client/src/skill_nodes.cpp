@@ -15,7 +15,7 @@ using opcua::AttributeId;
 using opcua::Client;
 using opcua::NodeClass;
 using opcua::NodeId;
-using opcua::ReferenceDescription;
+using opcua::Reference;
 using skill::Field;
 using skill::Place;
 
@@ -24,14 +24,13 @@ constexpr std::array kMethods{skill::Method::start, skill::Method::suspend, skil
 
 constexpr std::int32_t kScalar = -1;
 
-const ReferenceDescription* findNamed(const std::vector<ReferenceDescription>& references,
-                                      std::string_view name) {
+const Reference* findNamed(const std::vector<Reference>& references, std::string_view name) {
     const auto found = std::find_if(references.begin(), references.end(),
                                     [&](const auto& r) { return r.browse_name.name == name; });
     return found == references.end() ? nullptr : &*found;
 }
 
-Answer<std::vector<ReferenceDescription>> childrenOf(Questions& questions, const NodeId& node) {
+Answer<std::vector<Reference>> childrenOf(Questions& questions, const NodeId& node) {
     return questions.browse({.node = node, .node_classes = {}});
 }
 
@@ -55,7 +54,7 @@ public:
     }
 
 private:
-    Answer<FieldNode> readOne(const ReferenceDescription& variable) {
+    Answer<FieldNode> readOne(const Reference& variable) {
         const auto& node = variable.target;
         METIER_ASSIGN(auto attributes, questions_.readMany({{node, AttributeId::value},
                                                             {node, AttributeId::description},
@@ -79,10 +78,9 @@ private:
         const auto type = data_type.as<NodeId>();
         const auto declared_rank = rank.as<std::int32_t>();
         // "Any rank" (-2) and "scalar or one dimension" (-3) are taken as scalar.
-        const auto declared = type && declared_rank
-                                  ? opcua_skill::valueTypeOf(opcua_skill::VariableShape{
-                                        *type, std::max(*declared_rank, kScalar)})
-                                  : skill::ValueType::null;
+        const auto declared = type && declared_rank ? opcua_skill::valueTypeOf(opcua_skill::VariableShape{
+                                                          *type, std::max(*declared_rank, kScalar)})
+                                                    : skill::ValueType::null;
         return declared != skill::ValueType::null ? declared : opcua_skill::valueTypeOf(value);
     }
 
@@ -114,7 +112,7 @@ private:
     Place place_;
 };
 
-Answer<> appendFields(Questions& questions, const ReferenceDescription* folder, Place place,
+Answer<> appendFields(Questions& questions, const Reference* folder, Place place,
                       std::vector<FieldNode>& fields) {
     if (folder == nullptr) {
         return {};
@@ -129,7 +127,7 @@ tl::unexpected<opcua::Failure> lacks(const SkillAddress& address, std::string_vi
 }
 
 Answer<> findProgramNodes(Client& client, const SkillAddress& address,
-                          const std::vector<ReferenceDescription>& children, SkillNodes& nodes) {
+                          const std::vector<Reference>& children, SkillNodes& nodes) {
     for (const auto method : kMethods) {
         const auto* found = findNamed(children, toString(method));
         if (found == nullptr) {

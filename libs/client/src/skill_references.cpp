@@ -39,9 +39,9 @@ Answer<SkillReferences> ReferenceReader::read(const NodeId& node) const {
                   client_->browse({.node = node, .reference_type = kNonHierarchicalReferences}));
     SkillReferences result;
     for (const auto& reference : references) {
-        if (reference.reference_type == kHasDictionaryEntry) {
+        if (reference.type == kHasDictionaryEntry) {
             result.terms.push_back(reference.browse_name.name);
-        } else if (metier_ && reference.reference_type == NodeId(*metier_, kUsesSkill) &&
+        } else if (metier_ && reference.type == NodeId(*metier_, kUsesSkill) &&
                    result.uses.size() < kMostUses) {
             METIER_ASSIGN(auto use, readUse(reference));
             result.uses.push_back(std::move(use));
@@ -51,7 +51,7 @@ Answer<SkillReferences> ReferenceReader::read(const NodeId& node) const {
 }
 
 /// Reads a used skill. A missing property stays empty, so that it matches no skill.
-Answer<SkillUse> ReferenceReader::readUse(const opcua::ReferenceDescription& used) const {
+Answer<SkillUse> ReferenceReader::readUse(const opcua::Reference& used) const {
     SkillUse use{{}, {}, {}, used.target};
     if (used.type_definition != NodeId(*metier_, kUsedSkillType)) {
         return use;

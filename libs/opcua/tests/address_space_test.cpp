@@ -174,12 +174,6 @@ TEST_F(AddressSpaceTest, LetsClientsWriteOnlyWhereAllowed) {
     EXPECT_EQ(client_.read(speed).value, Value::of(9.0));
 }
 
-TEST_F(AddressSpaceTest, DescribesNodes) {
-    const NodeId speed = addSpeed();
-    EXPECT_TRUE(nodes_.setDescription(speed, {"en", "how fast [m/s]"}));
-    EXPECT_EQ(nodes_.setDescription(NodeId(2, "none"), {}).error().code, Errc::not_found);
-}
-
 TEST_F(AddressSpaceTest, ReadsFromADataSource) {
     const NodeId speed = addSpeed();
     double now = 3.0;

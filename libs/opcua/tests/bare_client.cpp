@@ -78,11 +78,6 @@ StatusCode BareClient::connect(const std::string& url) {
     return StatusCode(UA_Client_connect(client_, url.c_str()));
 }
 
-StatusCode BareClient::login(const std::string& url, const UserPassword& user) {
-    return StatusCode(
-        UA_Client_connectUsername(client_, url.c_str(), user.user.c_str(), user.password.c_str()));
-}
-
 void BareClient::disconnect() {
     UA_Client_disconnect(client_);
 }

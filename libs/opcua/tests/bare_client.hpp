@@ -29,7 +29,6 @@ public:
     BareClient& operator=(const BareClient&) = delete;
 
     StatusCode connect(const std::string& url);
-    StatusCode login(const std::string& url, const UserPassword& user);
     void disconnect();
     /// Closes the connection and leaves the session to its time-out.
     void breakConnection();

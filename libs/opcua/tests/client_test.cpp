@@ -108,7 +108,7 @@ TEST_F(ClientTest, BrowsesOverContinuationPoints) {
     const auto references = client->browse({.node = kMany, .references_at_once = 7});
     ASSERT_TRUE(references) << references.error().message;
     ASSERT_EQ(references->size(), 50U);
-    EXPECT_EQ(references->front().reference_type, ids::kHasComponent);
+    EXPECT_EQ(references->front().type, ids::kHasComponent);
     EXPECT_EQ(references->front().type_definition, ids::kBaseDataVariableType);
 }
 
@@ -121,7 +121,6 @@ TEST_F(ClientTest, BrowsesWhatItIsAskedFor) {
     ASSERT_TRUE(parents) << parents.error().message;
     ASSERT_EQ(parents->size(), 1U);
     EXPECT_EQ(parents->front().target, ids::kObjectsFolder);
-    EXPECT_FALSE(parents->front().is_forward);
 }
 
 TEST_F(ClientTest, KeepsTheStatusCodeOfARefusedBrowse) {

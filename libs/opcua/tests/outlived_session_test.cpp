@@ -23,7 +23,7 @@ NodeId diagnosticsOfASession(Client& client) {
     }
     const auto variables =
         client.browse({.node = sessions->front().target, .node_classes = {NodeClass::variable}});
-    for (const auto& variable : variables.value_or(std::vector<ReferenceDescription>())) {
+    for (const auto& variable : variables.value_or(std::vector<Reference>())) {
         if (variable.browse_name.name == "SessionDiagnostics") {
             return variable.target;
         }

@@ -57,6 +57,12 @@ protected:
         options.discovery = discovery;
         options.application_uri = kServerUri;
         options.port = 0;
+        options.on_audit = [this](const AuditRecord& record) {
+            if (record.kind == AuditKind::denied) {
+                const std::lock_guard lock(mutex_);
+                denials_.push_back(record);
+            }
+        };
         options.security =
             ServerSecurity{.credentials = {serverIdentity(), folder_ / "server"},
                            .authenticate = [this](const Login& login) { return admit(login); },
@@ -64,11 +70,6 @@ protected:
                                [this](const RefusedPeer& peer) {
                                    const std::lock_guard lock(mutex_);
                                    refused_.push_back(peer.refusal);
-                               },
-                           .on_denied =
-                               [this](const Denial& denial) {
-                                   const std::lock_guard lock(mutex_);
-                                   denials_.push_back(denial);
                                }};
         auto server = Server::create(std::move(options));
         ASSERT_TRUE(server) << server.error().message;
@@ -125,7 +126,7 @@ protected:
                                                  {"operator", security::Role::operator_},
                                                  {"engineer", security::Role::engineer},
                                                  {"admin", security::Role::security_admin}};
-    std::vector<Denial> denials_;
+    std::vector<AuditRecord> denials_;
     std::unique_ptr<Server> server_;
 };
 

@@ -124,23 +124,6 @@ TEST(Server, GivesEachNamespaceAnIndexInOrder) {
     EXPECT_EQ(server->nodes().namespaceIndex("urn:none").error().code, Errc::not_found);
 }
 
-TEST(Server, LetsUsersInWithTheirPasswordOnly) {
-    auto options = testOptions();
-    options.users = {{"operator", "secret"}};
-    const auto server = makeServer(options);
-    ASSERT_TRUE(server->start());
-    BareClient good;
-    EXPECT_EQ(good.login(server->endpointUrl(), {"operator", "secret"}), status::kGood);
-    BareClient wrong;
-    EXPECT_EQ(wrong.login(server->endpointUrl(), {"operator", "secrex"}),
-              status::kBadUserAccessDenied);
-    BareClient unknown;
-    EXPECT_EQ(unknown.login(server->endpointUrl(), {"nobody", "secret"}),
-              status::kBadUserAccessDenied);
-    BareClient anonymous;
-    EXPECT_EQ(anonymous.connect(server->endpointUrl()), status::kGood);
-}
-
 TEST(Server, LetsNoClientChangeTheAddressSpace) {
     const auto server = makeServer();
     ASSERT_TRUE(server->start());
@@ -344,17 +327,14 @@ private:
 
 TEST(ServerSession, TellsListenersWhichSessionWasClosed) {
     Closed closed;
-    auto options = testOptions();
-    options.users = {{"operator", "secret"}};
-    const auto server = makeServer(options);
+    const auto server = makeServer();
     server->onSessionClosed([&](const Session& session) { closed.add(session); });
     ASSERT_TRUE(server->start());
     BareClient client;
-    ASSERT_EQ(client.login(server->endpointUrl(), {"operator", "secret"}), status::kGood);
+    ASSERT_EQ(client.connect(server->endpointUrl()), status::kGood);
     client.disconnect();
     const auto sessions = closed.waitFor(1);
     ASSERT_EQ(sessions.size(), 1U);
-    EXPECT_EQ(sessions[0].user, "operator");
     EXPECT_EQ(sessions[0].application_name, "bare client");
     EXPECT_THAT(sessions[0].application_uri, HasSubstr("urn:"));
     EXPECT_FALSE(sessions[0].id.isNull());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <future>
+#include <type_traits>
 #include <utility>
 
 #include "client/client_core.hpp"
@@ -49,6 +50,17 @@ Answer<T> waitFor(const ClientCore& core, Deadline deadline, const Start& start)
         return timedOut(deadline);
     }
     return answer.get();
+}
+
+/// Starts a request with `items` and waits for its answer.
+template <typename Items, typename T>
+Answer<T> ask(ClientCore& core, Timeout timeout,
+              Answer<> (*start)(ClientCore&, Items, Deadline, Done<T>),
+              std::type_identity_t<Items> items) {
+    const auto deadline = core.deadline(timeout);
+    return waitFor<T>(core, deadline, [&](auto done) {
+        return start(core, std::move(items), deadline, std::move(done));
+    });
 }
 
 Answer<> asAnswer(const Answer<std::vector<StatusCode>>& written, const NodeId& node) {
@@ -156,10 +168,7 @@ Answer<Value> Client::read(const NodeId& node, AttributeId attribute, Timeout ti
 }
 
 Answer<std::vector<DataValue>> Client::readMany(std::vector<ReadItem> items, Timeout timeout) {
-    const auto deadline = core_->deadline(timeout);
-    return waitFor<std::vector<DataValue>>(*core_, deadline, [&](auto done) {
-        return startRead(*core_, std::move(items), deadline, std::move(done));
-    });
+    return ask(*core_, timeout, startRead, std::move(items));
 }
 
 Answer<> Client::write(NodeId node, Value value, std::optional<UtcTime> source_time,
@@ -168,28 +177,19 @@ Answer<> Client::write(NodeId node, Value value, std::optional<UtcTime> source_t
 }
 
 Answer<std::vector<StatusCode>> Client::writeMany(std::vector<WriteItem> items, Timeout timeout) {
-    const auto deadline = core_->deadline(timeout);
-    return waitFor<std::vector<StatusCode>>(*core_, deadline, [&](auto done) {
-        return startWrite(*core_, std::move(items), deadline, std::move(done));
-    });
+    return ask(*core_, timeout, startWrite, std::move(items));
 }
 
 Answer<CallResult> Client::call(MethodCall method_call, Timeout timeout) {
-    const auto deadline = core_->deadline(timeout);
-    return waitFor<CallResult>(*core_, deadline, [&](auto done) {
-        return startCall(*core_, std::move(method_call), deadline, std::move(done));
-    });
+    return ask(*core_, timeout, startCall, std::move(method_call));
 }
 
 Answer<CallResult> Client::call(NodeId object, NodeId method, std::vector<Value> inputs) {
     return call(MethodCall{std::move(object), std::move(method), std::move(inputs)});
 }
 
-Answer<std::vector<ReferenceDescription>> Client::browse(BrowseQuery query, Timeout timeout) {
-    const auto deadline = core_->deadline(timeout);
-    return waitFor<std::vector<ReferenceDescription>>(*core_, deadline, [&](auto done) {
-        return startBrowse(*core_, std::move(query), deadline, std::move(done));
-    });
+Answer<std::vector<Reference>> Client::browse(BrowseQuery query, Timeout timeout) {
+    return ask(*core_, timeout, startBrowse, std::move(query));
 }
 
 Answer<NodeId> Client::translate(const NodeId& start, std::vector<QualifiedName> names,
@@ -201,10 +201,7 @@ Answer<NodeId> Client::translate(const NodeId& start, std::vector<QualifiedName>
 
 Answer<std::vector<Answer<NodeId>>> Client::translateMany(std::vector<RelativePath> paths,
                                                           Timeout timeout) {
-    const auto deadline = core_->deadline(timeout);
-    return waitFor<std::vector<Answer<NodeId>>>(*core_, deadline, [&](auto done) {
-        return startTranslate(*core_, std::move(paths), deadline, std::move(done));
-    });
+    return ask(*core_, timeout, startTranslate, std::move(paths));
 }
 
 Answer<std::vector<std::string>> Client::namespaceArray(Timeout timeout) {

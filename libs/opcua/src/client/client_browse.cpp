@@ -17,7 +17,7 @@ constexpr std::size_t kMostReferences = 100'000;
 class Browsing : public std::enable_shared_from_this<Browsing> {
 public:
     Browsing(ClientCore& core, BrowseQuery query, Deadline deadline,
-             Done<std::vector<ReferenceDescription>> done)
+             Done<std::vector<Reference>> done)
         : core_(core),
           query_(std::move(query)),
           task_{"browsing " + query_.node.toString(), deadline},
@@ -30,33 +30,14 @@ private:
     void take(UA_BrowseResult& result);
     template <typename Request>
     OnResponse<Request> taken();
-    void finish(Answer<std::vector<ReferenceDescription>> answer);
+    void finish(Answer<std::vector<Reference>> answer);
 
     ClientCore& core_;
     const BrowseQuery query_;
     const Task task_;
-    const Done<std::vector<ReferenceDescription>> done_;
-    std::vector<ReferenceDescription> references_;
+    const Done<std::vector<Reference>> done_;
+    std::vector<Reference> references_;
 };
-
-UA_BrowseDirection nativeOf(BrowseQuery::Direction direction) {
-    switch (direction) {
-        case BrowseQuery::Direction::forward:
-            return UA_BROWSEDIRECTION_FORWARD;
-        case BrowseQuery::Direction::inverse:
-            return UA_BROWSEDIRECTION_INVERSE;
-        case BrowseQuery::Direction::both:
-            break;
-    }
-    return UA_BROWSEDIRECTION_BOTH;
-}
-
-ReferenceDescription descriptionFrom(const UA_ReferenceDescription& native) {
-    return {fromNative(native.referenceTypeId),      native.isForward,
-            fromNative(native.nodeId.nodeId),        fromNative(native.browseName),
-            fromNative(native.displayName),          static_cast<NodeClass>(native.nodeClass),
-            fromNative(native.typeDefinition.nodeId)};
-}
 
 void Browsing::begin() {
     UA_BrowseDescription description{};
@@ -117,14 +98,14 @@ void Browsing::take(UA_BrowseResult& result) {
     });
 }
 
-void Browsing::finish(Answer<std::vector<ReferenceDescription>> answer) {
+void Browsing::finish(Answer<std::vector<Reference>> answer) {
     core_.later([done = done_, answer = std::move(answer)]() mutable { done(std::move(answer)); });
 }
 
 }  // namespace
 
 Answer<> startBrowse(ClientCore& core, BrowseQuery query, Deadline deadline,
-                     Done<std::vector<ReferenceDescription>> done) {
+                     Done<std::vector<Reference>> done) {
     // Shared by the answers on their way: the last one ends it.
     auto browsing = std::make_shared<Browsing>(core, std::move(query), deadline, std::move(done));
     return core.request([browsing = std::move(browsing)] { browsing->begin(); });

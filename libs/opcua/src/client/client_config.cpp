@@ -20,8 +20,7 @@ constexpr int kChecksPerSessionTimeout = 3;
 constexpr std::chrono::milliseconds kLongestSilence{2'000};
 
 void setUser(const UserName& user, UA_ClientConfig& config) {
-    auto* token = UA_UserNameIdentityToken_new();
-    checkAllocated(token == nullptr ? UA_STATUSCODE_BADOUTOFMEMORY : UA_STATUSCODE_GOOD);
+    auto* token = checkAllocated(UA_UserNameIdentityToken_new());
     UA_ExtensionObject_setValue(&config.userIdentityToken, token,
                                 &UA_TYPES[UA_TYPES_USERNAMEIDENTITYTOKEN]);
     toNative(user.name, token->userName);

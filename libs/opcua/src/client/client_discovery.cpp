@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "client/client_core.hpp"
-#include "common/convert.hpp"
+#include "common/native.hpp"
 #include "metier/opcua/discovery.hpp"
 
 namespace metier::opcua {
@@ -25,16 +25,12 @@ EndpointDescription described(const UA_EndpointDescription& native) {
     return endpoint;
 }
 
-ServerDescription described(const UA_ApplicationDescription& native) {
-    ServerDescription server{textFrom(native.applicationUri),
-                             textFrom(native.productUri),
-                             fromNative(native.applicationName),
-                             static_cast<ApplicationType>(native.applicationType),
-                             {}};
-    for (std::size_t i = 0; i < native.discoveryUrlsSize; ++i) {
-        server.discovery_urls.push_back(textFrom(native.discoveryUrls[i]));
-    }
-    return server;
+ServerDescription fromNative(const UA_ApplicationDescription& native) {
+    using opcua::fromNative;
+    return {textFrom(native.applicationUri), textFrom(native.productUri),
+            fromNative(native.applicationName),
+            static_cast<ApplicationType>(native.applicationType),
+            vectorFrom<std::string>(native.discoveryUrls, native.discoveryUrlsSize)};
 }
 
 ClientOptions optionsFor(std::chrono::milliseconds timeout) {
@@ -101,42 +97,24 @@ std::vector<T> listFrom(const Native* first, std::size_t count) {
     return list;
 }
 
-template <typename Native>
-Native* arrayOf(std::size_t count, const UA_DataType& type) {
-    auto* array = static_cast<Native*>(UA_Array_new(count, &type));
-    checkAllocated(array == nullptr ? UA_STATUSCODE_BADOUTOFMEMORY : UA_STATUSCODE_GOOD);
-    return array;
-}
-
-void fill(const std::vector<std::string>& texts, UA_String*& array, std::size_t& size) {
-    array = arrayOf<UA_String>(texts.size(), UA_TYPES[UA_TYPES_STRING]);
-    size = texts.size();
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-        toNative(texts[i], array[i]);
-    }
-}
-
 void fill(const ServerRegistration& registration, UA_RegisteredServer& target) {
     toNative(registration.application_uri, target.serverUri);
     toNative(registration.product_uri, target.productUri);
-    target.serverNames = arrayOf<UA_LocalizedText>(1, UA_TYPES[UA_TYPES_LOCALIZEDTEXT]);
-    target.serverNamesSize = 1;
-    toNative(LocalizedText{"", registration.name}, target.serverNames[0]);
+    toNative(std::vector{LocalizedText{"", registration.name}}, target.serverNames,
+             target.serverNamesSize);
     target.serverType = UA_APPLICATIONTYPE_SERVER;
-    fill(registration.discovery_urls, target.discoveryUrls, target.discoveryUrlsSize);
+    toNative(registration.discovery_urls, target.discoveryUrls, target.discoveryUrlsSize);
     target.isOnline = registration.presence == ServerRegistration::Presence::online;
 }
 
 void fillMdns(const ServerRegistration& registration, UA_RegisterServer2Request& request) {
-    auto* mdns = UA_MdnsDiscoveryConfiguration_new();
-    checkAllocated(mdns == nullptr ? UA_STATUSCODE_BADOUTOFMEMORY : UA_STATUSCODE_GOOD);
-    request.discoveryConfiguration =
-        arrayOf<UA_ExtensionObject>(1, UA_TYPES[UA_TYPES_EXTENSIONOBJECT]);
+    request.discoveryConfiguration = checkAllocated(UA_ExtensionObject_new());
     request.discoveryConfigurationSize = 1;
+    auto* mdns = checkAllocated(UA_MdnsDiscoveryConfiguration_new());
     UA_ExtensionObject_setValue(request.discoveryConfiguration, mdns,
                                 &UA_TYPES[UA_TYPES_MDNSDISCOVERYCONFIGURATION]);
     toNative(registration.name, mdns->mdnsServerName);
-    fill(registration.capabilities, mdns->serverCapabilities, mdns->serverCapabilitiesSize);
+    toNative(registration.capabilities, mdns->serverCapabilities, mdns->serverCapabilitiesSize);
 }
 
 /// Tells it by one of the two services, which both answer no more than that it went well.

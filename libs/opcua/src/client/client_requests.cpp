@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/convert.hpp"
+#include "common/native.hpp"
 
 namespace metier::opcua {
 
@@ -99,14 +99,6 @@ std::vector<Native> nativesOf(const Items& items) {
     return natives;
 }
 
-std::vector<StatusCode> statusesFrom(const UA_StatusCode* first, std::size_t count) {
-    std::vector<StatusCode> statuses;
-    for (std::size_t i = 0; i < count; ++i) {
-        statuses.emplace_back(first[i]);
-    }
-    return statuses;
-}
-
 void sendRead(ClientCore& core, const std::vector<ReadItem>& items, Task task,
               Done<std::vector<DataValue>> done) {
     auto natives = nativesOf<UA_ReadValueId>(items);
@@ -145,7 +137,7 @@ void sendWrite(ClientCore& core, const std::vector<WriteItem>& items, Task task,
         if (response.resultsSize != asked) {
             return tl::unexpected(miscounted(doing, response.resultsSize, asked));
         }
-        return statusesFrom(response.results, asked);
+        return vectorFrom<StatusCode>(response.results, asked);
     };
     core.send(request, std::move(task),
               converted<UA_WriteRequest>(core, std::move(done), std::move(convert)));
@@ -153,8 +145,9 @@ void sendWrite(ClientCore& core, const std::vector<WriteItem>& items, Task task,
 
 Failure refusedCall(const std::string& doing, const UA_CallMethodResult& result) {
     const StatusCode status(result.statusCode);
-    Failure failure{errorFrom(status, doing), status,
-                    statusesFrom(result.inputArgumentResults, result.inputArgumentResultsSize)};
+    Failure failure{
+        errorFrom(status, doing), status,
+        vectorFrom<StatusCode>(result.inputArgumentResults, result.inputArgumentResultsSize)};
     for (std::size_t i = 0; i < failure.input_results.size(); ++i) {
         if (failure.input_results[i].isBad()) {
             failure.message +=
@@ -172,9 +165,10 @@ Answer<CallResult> callResultFrom(const std::string& doing, UA_CallResponse& res
     if (StatusCode(native.statusCode).isBad()) {
         return tl::unexpected(refusedCall(doing, native));
     }
-    CallResult result{StatusCode(native.statusCode),
-                      statusesFrom(native.inputArgumentResults, native.inputArgumentResultsSize),
-                      {}};
+    CallResult result{
+        StatusCode(native.statusCode),
+        vectorFrom<StatusCode>(native.inputArgumentResults, native.inputArgumentResultsSize),
+        {}};
     for (std::size_t i = 0; i < native.outputArgumentsSize; ++i) {
         result.outputs.push_back(ValueAccess::take(native.outputArguments[i]));
     }
@@ -207,11 +201,8 @@ void sendCall(ClientCore& core, const MethodCall& call, Task task, Done<CallResu
 
 Answer<NodeId> targetFrom(const RelativePath& path, const UA_BrowsePathResult& result) {
     const auto doing = [&path] {
-        std::string text = "the path " + path.start.toString();
-        for (const auto& name : path.names) {
-            text += "/" + name.toString();
-        }
-        return text;
+        return "the path " + path.start.toString() + (path.names.empty() ? "" : "/") +
+               textOf(path.names);
     };
     if (StatusCode(result.statusCode).isBad()) {
         return failed(StatusCode(result.statusCode), doing());

@@ -21,7 +21,7 @@ Answer<> startWrite(ClientCore& core, std::vector<WriteItem> items, Deadline dea
                     Done<std::vector<StatusCode>> done);
 Answer<> startCall(ClientCore& core, MethodCall call, Deadline deadline, Done<CallResult> done);
 Answer<> startBrowse(ClientCore& core, BrowseQuery query, Deadline deadline,
-                     Done<std::vector<ReferenceDescription>> done);
+                     Done<std::vector<Reference>> done);
 Answer<> startTranslate(ClientCore& core, std::vector<RelativePath> paths, Deadline deadline,
                         Done<std::vector<Answer<NodeId>>> done);
 

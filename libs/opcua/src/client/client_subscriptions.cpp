@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "client/client_core.hpp"
-#include "client/client_filters.hpp"
 #include "common/convert.hpp"
 
 namespace metier::opcua {
@@ -41,30 +40,11 @@ bool isOverflow(const UA_EventFieldList& event) {
     });
 }
 
-/// The notification as Native, if it is one.
-template <typename Native>
-Native* decodedAs(const UA_ExtensionObject& notification, std::size_t type) {
-    if (notification.encoding != UA_EXTENSIONOBJECT_DECODED) {
-        return nullptr;
-    }
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-union-access): the stack's, checked above
-    const auto& decoded = notification.content.decoded;
-    return decoded.type == &UA_TYPES[type] ? static_cast<Native*>(decoded.data) : nullptr;
-}
-
-std::string textOf(const std::vector<QualifiedName>& path) {
-    std::string text;
-    for (const auto& name : path) {
-        text += (text.empty() ? "" : "/") + name.toString();
-    }
-    return text;
-}
-
 /// The first field of an EventFilter that the server rejects, `, field 0:Time`; empty if none.
 std::string rejectedField(const ItemRequest& request, const UA_MonitoredItemCreateResult& result) {
     const auto* asked = std::get_if<EventItem>(&request);
     const auto* filter =
-        decodedAs<UA_EventFilterResult>(result.filterResult, UA_TYPES_EVENTFILTERRESULT);
+        decodedAs<UA_EventFilterResult>(result.filterResult, UA_TYPES[UA_TYPES_EVENTFILTERRESULT]);
     if (asked == nullptr || filter == nullptr) {
         return {};
     }
@@ -83,6 +63,49 @@ Answer<> createdAs(const ItemRequest& request, const UA_MonitoredItemCreateResul
     return status.isBad() ? failed(status, doingTo(request) + rejectedField(request, result))
                           : Answer<>();
 }
+
+/// The stack's form of an EventFilter; a view of it, as long as both live and do not move.
+class NativeEventFilter {
+public:
+    explicit NativeEventFilter(const EventFilter& filter) {
+        paths_.reserve(filter.fields.size());
+        for (const auto& field : filter.fields) {
+            auto& path = paths_.emplace_back();
+            for (const auto& name : field) {
+                path.push_back(viewOf(name));
+            }
+            fields_.push_back({viewOf(ids::kBaseEventType), path.size(), path.data(),
+                               UA_ATTRIBUTEID_VALUE, UA_STRING_NULL});
+        }
+        native_.selectClausesSize = fields_.size();
+        native_.selectClauses = fields_.data();
+        if (filter.of_type) {
+            ofType(*filter.of_type);
+        }
+    }
+    NativeEventFilter(const NativeEventFilter&) = delete;
+    NativeEventFilter& operator=(const NativeEventFilter&) = delete;
+
+    UA_EventFilter* get() noexcept { return &native_; }
+
+private:
+    void ofType(const NodeId& type) {
+        type_ = viewOf(type);
+        UA_Variant_setScalar(&operand_.value, &type_, &UA_TYPES[UA_TYPES_NODEID]);
+        UA_ExtensionObject_setValueNoDelete(&operand_object_, &operand_,
+                                            &UA_TYPES[UA_TYPES_LITERALOPERAND]);
+        element_ = {UA_FILTEROPERATOR_OFTYPE, 1, &operand_object_};
+        native_.whereClause = {1, &element_};
+    }
+
+    std::vector<std::vector<UA_QualifiedName>> paths_;
+    std::vector<UA_SimpleAttributeOperand> fields_;
+    UA_NodeId type_{};
+    UA_LiteralOperand operand_{};
+    UA_ExtensionObject operand_object_{};
+    UA_ContentFilterElement element_{};
+    UA_EventFilter native_{};
+};
 
 /// The stack's request for one item; a view of the item, as long as neither moves.
 class NativeItem {
@@ -325,18 +348,18 @@ void ClientSubscriptions::checkSequence(const UA_NotificationMessage& message) {
 }
 
 void ClientSubscriptions::takeNotification(const UA_ExtensionObject& notification) {
-    if (const auto* events =
-            decodedAs<UA_EventNotificationList>(notification, UA_TYPES_EVENTNOTIFICATIONLIST)) {
+    if (const auto* events = decodedAs<UA_EventNotificationList>(
+            notification, UA_TYPES[UA_TYPES_EVENTNOTIFICATIONLIST])) {
         for (auto& event : all(events->events, events->eventsSize)) {
             takeEvent(event);
         }
     } else if (const auto* changes = decodedAs<UA_DataChangeNotification>(
-                   notification, UA_TYPES_DATACHANGENOTIFICATION)) {
+                   notification, UA_TYPES[UA_TYPES_DATACHANGENOTIFICATION])) {
         for (const auto& change : all(changes->monitoredItems, changes->monitoredItemsSize)) {
             tell(change.clientHandle, fromNative(change.value));
         }
     } else if (const auto* ended = decodedAs<UA_StatusChangeNotification>(
-                   notification, UA_TYPES_STATUSCHANGENOTIFICATION)) {
+                   notification, UA_TYPES[UA_TYPES_STATUSCHANGENOTIFICATION])) {
         if (StatusCode(ended->status).isBad()) {
             lostByServer(StatusCode(ended->status));
         }
@@ -363,21 +386,22 @@ void ClientSubscriptions::takeEvent(UA_EventFieldList& event) {
 }
 
 void ClientSubscriptions::tell(std::uint32_t handle, EventNotice notice) {
-    core_.later([this, handle, notice = std::move(notice)] {
-        const auto found = items_.find(handle);
-        const auto item = found == items_.end() ? nullptr : found->second;
-        if (const auto* events = item ? std::get_if<EventItem>(&item->request) : nullptr) {
-            events->callback(notice);
-        }
-    });
+    tellAs<EventItem>(handle, std::move(notice));
 }
 
 void ClientSubscriptions::tell(std::uint32_t handle, DataValue value) {
-    core_.later([this, handle, value = std::move(value)] {
+    tellAs<DataItem>(handle, std::move(value));
+}
+
+/// Gives the news to the item's callback, if the item is of that kind and was not removed
+/// meanwhile.
+template <typename Kind, typename News>
+void ClientSubscriptions::tellAs(std::uint32_t handle, News news) {
+    core_.later([this, handle, news = std::move(news)] {
         const auto found = items_.find(handle);
         const auto item = found == items_.end() ? nullptr : found->second;
-        if (const auto* data = item ? std::get_if<DataItem>(&item->request) : nullptr) {
-            data->callback(value);
+        if (const auto* wanted = item ? std::get_if<Kind>(&item->request) : nullptr) {
+            wanted->callback(news);
         }
     });
 }

@@ -107,6 +107,8 @@ private:
     void checkSequence(const UA_NotificationMessage& message);
     void tell(std::uint32_t handle, EventNotice notice);
     void tell(std::uint32_t handle, DataValue value);
+    template <typename Kind, typename News>
+    void tellAs(std::uint32_t handle, News news);
 
     ClientCore& core_;
     std::atomic<std::uint32_t> last_handle_{0};

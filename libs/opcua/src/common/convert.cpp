@@ -5,30 +5,13 @@
 #include <cstring>
 #include <limits>
 
+#include "metier/base/overloaded.hpp"
+
 namespace metier::opcua {
 
 namespace {
 
 using Ticks = std::chrono::duration<std::int64_t, std::ratio<1, 10'000'000>>;
-
-template <typename... Visitors>
-struct Overloaded : Visitors... {
-    using Visitors::operator()...;
-};
-template <typename... Visitors>
-Overloaded(Visitors...) -> Overloaded<Visitors...>;
-
-UA_Guid nativeGuid(const Guid& guid) noexcept {
-    UA_Guid native{guid.data1, guid.data2, guid.data3, {}};
-    std::copy(guid.data4.begin(), guid.data4.end(), std::begin(native.data4));
-    return native;
-}
-
-Guid guidFrom(const UA_Guid& native) noexcept {
-    Guid guid{native.data1, native.data2, native.data3, {}};
-    std::copy(std::begin(native.data4), std::end(native.data4), guid.data4.begin());
-    return guid;
-}
 
 // The stack's structs have no const pointers; what it is given through a view it only reads.
 UA_Byte* stackPointer(const void* data) noexcept {
@@ -50,7 +33,7 @@ UA_String viewOf(std::string_view text) noexcept {
 UA_NodeId viewOf(const NodeId& id) noexcept {
     UA_NodeId native{};
     native.namespaceIndex = id.namespaceIndex();
-    std::visit(Overloaded{[&](std::uint32_t number) {
+    std::visit(overloaded{[&](std::uint32_t number) {
                               native.identifierType = UA_NODEIDTYPE_NUMERIC;
                               native.identifier.numeric = number;
                           },
@@ -60,7 +43,7 @@ UA_NodeId viewOf(const NodeId& id) noexcept {
                           },
                           [&](const Guid& guid) {
                               native.identifierType = UA_NODEIDTYPE_GUID;
-                              native.identifier.guid = nativeGuid(guid);
+                              toNative(guid, native.identifier.guid);
                           },
                           [&](const ByteString& bytes) {
                               native.identifierType = UA_NODEIDTYPE_BYTESTRING;
@@ -77,6 +60,14 @@ UA_QualifiedName viewOf(const QualifiedName& name) noexcept {
 
 UA_LocalizedText viewOf(const LocalizedText& text) noexcept {
     return {viewOf(text.locale), viewOf(text.text)};
+}
+
+std::string textOf(std::span<const QualifiedName> path) {
+    std::string text;
+    for (const auto& name : path) {
+        text += (text.empty() ? "" : "/") + name.toString();
+    }
+    return text;
 }
 
 std::string textFrom(const UA_String& text) {
@@ -125,12 +116,18 @@ NodeId fromNative(const UA_NodeId& id) {
         case UA_NODEIDTYPE_STRING:
             return {id.namespaceIndex, textFrom(id.identifier.string)};
         case UA_NODEIDTYPE_GUID:
-            return {id.namespaceIndex, guidFrom(id.identifier.guid)};
+            return {id.namespaceIndex, fromNative(id.identifier.guid)};
         case UA_NODEIDTYPE_BYTESTRING:
             return {id.namespaceIndex, bytesFrom(id.identifier.byteString)};
         default:
             return {id.namespaceIndex, id.identifier.numeric};
     }
+}
+
+Guid fromNative(const UA_Guid& guid) noexcept {
+    Guid result{guid.data1, guid.data2, guid.data3, {}};
+    std::copy(std::begin(guid.data4), std::end(guid.data4), result.data4.begin());
+    return result;
 }
 
 QualifiedName fromNative(const UA_QualifiedName& name) {
@@ -152,6 +149,20 @@ Argument fromNative(const UA_Argument& argument) {
                                        argument.arrayDimensions + argument.arrayDimensionsSize);
     }
     return result;
+}
+
+UA_BrowseDirection nativeOf(BrowseDirection direction) noexcept {
+    return direction == BrowseDirection::forward ? UA_BROWSEDIRECTION_FORWARD
+                                                 : UA_BROWSEDIRECTION_INVERSE;
+}
+
+Reference fromNative(const UA_ReferenceDescription& reference) {
+    return {fromNative(reference.referenceTypeId),
+            fromNative(reference.nodeId.nodeId),
+            fromNative(reference.browseName),
+            fromNative(reference.displayName),
+            static_cast<NodeClass>(reference.nodeClass),
+            fromNative(reference.typeDefinition.nodeId)};
 }
 
 DataValue fromNative(const UA_DataValue& value) {
@@ -179,6 +190,11 @@ void toNative(std::string_view text, UA_String& target) {
 void toNative(const NodeId& id, UA_NodeId& target) {
     const UA_NodeId view = viewOf(id);
     checkAllocated(UA_NodeId_copy(&view, &target));
+}
+
+void toNative(const Guid& guid, UA_Guid& target) noexcept {
+    target = {guid.data1, guid.data2, guid.data3, {}};
+    std::copy(guid.data4.begin(), guid.data4.end(), std::begin(target.data4));
 }
 
 void toNative(const QualifiedName& name, UA_QualifiedName& target) {

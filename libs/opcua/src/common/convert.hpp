@@ -6,6 +6,7 @@
 #include <open62541/types_generated.h>
 
 #include <new>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -41,6 +42,33 @@ inline void checkAllocated(UA_StatusCode code) {
     }
 }
 
+/// Memory that the stack has allocated; throws std::bad_alloc if there was none.
+template <typename Native>
+Native* checkAllocated(Native* memory) {
+    return memory == nullptr ? throw std::bad_alloc() : memory;
+}
+
+/// Runs steps that call the stack until one fails, and returns the code of the last one that ran.
+template <typename... Steps>
+UA_StatusCode inOrder(const Steps&... steps) {
+    UA_StatusCode code = UA_STATUSCODE_GOOD;
+    static_cast<void>((((code = steps()) == UA_STATUSCODE_GOOD) && ...));
+    return code;
+}
+
+/// Content of an ExtensionObject, or null unless it was decoded as that type.
+template <typename Native>
+Native* decodedAs(const UA_ExtensionObject& object, const UA_DataType& type) noexcept {
+    const bool has_content = object.encoding == UA_EXTENSIONOBJECT_DECODED ||
+                             object.encoding == UA_EXTENSIONOBJECT_DECODED_NODELETE;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-union-access): the stack's, checked above
+    const auto& decoded = object.content.decoded;
+    return has_content && decoded.type == &type ? static_cast<Native*>(decoded.data) : nullptr;
+}
+
+/// Path for messages, `2:Skills/2:Move`.
+std::string textOf(std::span<const QualifiedName> path);
+
 /// The stack's view of our text or id; valid as long as what it was made from.
 UA_String viewOf(std::string_view text) noexcept;
 /// As they are; valid as long as the bytes.
@@ -48,6 +76,7 @@ std::string_view bytesOf(const UA_ByteString& bytes) noexcept;
 UA_NodeId viewOf(const NodeId& id) noexcept;
 UA_QualifiedName viewOf(const QualifiedName& name) noexcept;
 UA_LocalizedText viewOf(const LocalizedText& text) noexcept;
+UA_BrowseDirection nativeOf(BrowseDirection direction) noexcept;
 
 /// Text as it came, unchecked: use sanitise() before it is shown.
 std::string textFrom(const UA_String& text);
@@ -59,11 +88,14 @@ UA_DateTime nativeTime(UtcTime time) noexcept;
 NodeId fromNative(const UA_NodeId& id);
 QualifiedName fromNative(const UA_QualifiedName& name);
 LocalizedText fromNative(const UA_LocalizedText& text);
+Guid fromNative(const UA_Guid& guid) noexcept;
 ByteString bytesFrom(const UA_ByteString& bytes);
 Argument fromNative(const UA_Argument& argument);
+Reference fromNative(const UA_ReferenceDescription& reference);
 DataValue fromNative(const UA_DataValue& value);
 ProgramDiagnostic fromNative(const UA_ProgramDiagnostic2DataType& diagnostic);
 void toNative(const NodeId& id, UA_NodeId& target);
+void toNative(const Guid& guid, UA_Guid& target) noexcept;
 void toNative(std::string_view text, UA_String& target);
 void toNative(const QualifiedName& name, UA_QualifiedName& target);
 void toNative(const LocalizedText& text, UA_LocalizedText& target);

@@ -41,12 +41,11 @@ void write(void* context, UA_LogLevel level, UA_LogCategory /*category*/, const 
     if (!target.should_log(our_level)) {
         return;
     }
-    guarded([&]() -> UA_StatusCode {
+    guarded([&] {
         std::array<char, 1024> text{};
         std::vsnprintf(text.data(), text.size(), format, arguments);
         std::replace(text.begin(), text.end(), '\t', ' ');  // the stack's columns
         target.log(our_level, "{}", sanitise(text.data()));
-        return UA_STATUSCODE_GOOD;
     });
 }
 

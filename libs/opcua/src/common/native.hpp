@@ -57,6 +57,8 @@ template <>
 struct Native<LocalizedText> : Converted<LocalizedText, UA_LocalizedText, UA_TYPES_LOCALIZEDTEXT> {
 };
 template <>
+struct Native<Guid> : Converted<Guid, UA_Guid, UA_TYPES_GUID> {};
+template <>
 struct Native<Argument> : Converted<Argument, UA_Argument, UA_TYPES_ARGUMENT> {};
 
 template <>
@@ -76,21 +78,6 @@ struct Native<ByteString> {
         std::copy(value.bytes.begin(), value.bytes.end(), target.data);
     }
     static ByteString read(const UA_ByteString& value) { return bytesFrom(value); }
-};
-
-template <>
-struct Native<Guid> {
-    using Type = UA_Guid;
-    static constexpr std::size_t kIndex = UA_TYPES_GUID;
-    static void write(const Guid& value, UA_Guid& target) noexcept {
-        target = {value.data1, value.data2, value.data3, {}};
-        std::copy(value.data4.begin(), value.data4.end(), std::begin(target.data4));
-    }
-    static Guid read(const UA_Guid& value) noexcept {
-        Guid guid{value.data1, value.data2, value.data3, {}};
-        std::copy(std::begin(value.data4), std::end(value.data4), guid.data4.begin());
-        return guid;
-    }
 };
 
 template <>
@@ -150,40 +137,44 @@ struct Native<ThreeDFrame> {
     }
 };
 
-/// Three numbers x, y, z.
+/// Three numbers, whatever their names.
 template <typename T, typename NativeType, std::size_t kType>
-struct Xyz {
+struct ThreeNumbers {
     using Type = NativeType;
     static constexpr std::size_t kIndex = kType;
     static void write(const T& value, NativeType& target) noexcept {
-        target = {value.x, value.y, value.z};
+        const auto& [first, second, third] = value;
+        target = {first, second, third};
     }
-    static T read(const NativeType& value) noexcept { return {value.x, value.y, value.z}; }
+    static T read(const NativeType& value) noexcept {
+        const auto& [first, second, third] = value;
+        return {first, second, third};
+    }
 };
 
 template <>
 struct Native<ThreeDCartesianCoordinates>
-    : Xyz<ThreeDCartesianCoordinates, UA_ThreeDCartesianCoordinates,
-          UA_TYPES_THREEDCARTESIANCOORDINATES> {};
-
+    : ThreeNumbers<ThreeDCartesianCoordinates, UA_ThreeDCartesianCoordinates,
+                   UA_TYPES_THREEDCARTESIANCOORDINATES> {};
 template <>
-struct Native<ThreeDOrientation> {
-    using Type = UA_ThreeDOrientation;
-    static constexpr std::size_t kIndex = UA_TYPES_THREEDORIENTATION;
-    static void write(const ThreeDOrientation& value, Type& target) noexcept {
-        target = {value.a, value.b, value.c};
-    }
-    static ThreeDOrientation read(const Type& value) noexcept {
-        return {value.a, value.b, value.c};
-    }
-};
-
+struct Native<ThreeDOrientation>
+    : ThreeNumbers<ThreeDOrientation, UA_ThreeDOrientation, UA_TYPES_THREEDORIENTATION> {};
 template <>
-struct Native<ThreeDVector> : Xyz<ThreeDVector, UA_ThreeDVector, UA_TYPES_THREEDVECTOR> {};
+struct Native<ThreeDVector> : ThreeNumbers<ThreeDVector, UA_ThreeDVector, UA_TYPES_THREEDVECTOR> {};
 
 template <>
 struct Native<ProgramDiagnostic> : Converted<ProgramDiagnostic, UA_ProgramDiagnostic2DataType,
                                              UA_TYPES_PROGRAMDIAGNOSTIC2DATATYPE> {};
+
+template <>
+struct Native<Value> {
+    using Type = UA_Variant;
+    static constexpr std::size_t kIndex = UA_TYPES_VARIANT;
+    static void write(const Value& value, UA_Variant& target) {
+        checkAllocated(UA_Variant_copy(&ValueAccess::native(value), &target));
+    }
+    static Value read(const UA_Variant& value) { return ValueAccess::copyOf(value); }
+};
 
 template <>
 struct Native<KeyValue> {
@@ -191,11 +182,34 @@ struct Native<KeyValue> {
     static constexpr std::size_t kIndex = UA_TYPES_KEYVALUEPAIR;
     static void write(const KeyValue& value, UA_KeyValuePair& target) {
         toNative(value.key, target.key);
-        checkAllocated(UA_Variant_copy(&ValueAccess::native(value.value), &target.value));
+        Native<Value>::write(value.value, target.value);
     }
     static KeyValue read(const UA_KeyValuePair& value) {
         return {fromNative(value.key), ValueAccess::copyOf(value.value)};
     }
 };
+
+/// Fills an array of a structure of the stack, whose old content must not own anything.
+template <typename T>
+void toNative(const std::vector<T>& values, typename Native<T>::Type*& target, std::size_t& size) {
+    const auto& type = UA_TYPES[Native<T>::kIndex];
+    target =
+        static_cast<typename Native<T>::Type*>(checkAllocated(UA_Array_new(values.size(), &type)));
+    size = values.size();
+    for (std::size_t i = 0; i < size; ++i) {
+        Native<T>::write(values[i], target[i]);
+    }
+}
+
+/// Copies an array of the stack.
+template <typename T>
+std::vector<T> vectorFrom(const typename Native<T>::Type* first, std::size_t size) {
+    std::vector<T> values;
+    values.reserve(size);
+    for (std::size_t i = 0; i < size; ++i) {
+        values.push_back(Native<T>::read(first[i]));
+    }
+    return values;
+}
 
 }  // namespace metier::opcua

@@ -35,26 +35,29 @@ StatusCode statusOf(security::RefusalKind kind) noexcept {
     return StatusCode(UA_STATUSCODE_BADCERTIFICATEINVALID);
 }
 
-UA_StatusCode expiryOf(UA_DateTime* expiry, UA_ByteString* der) noexcept {
+/// Runs `work` with the certificate that the stack asks about.
+template <typename Work>
+UA_StatusCode withCertificate(const UA_ByteString& der, const Work& work) noexcept {
     return guarded([&]() -> UA_StatusCode {
-        const auto certificate = security::Certificate::fromDer(bytesOf(*der));
+        const auto certificate = security::Certificate::fromDer(bytesOf(der));
         if (!certificate) {
             return UA_STATUSCODE_BADCERTIFICATEINVALID;
         }
-        *expiry =
-            UA_DateTime_fromUnixTime(std::chrono::system_clock::to_time_t(certificate->notAfter()));
+        work(*certificate);
         return UA_STATUSCODE_GOOD;
     });
 }
 
+UA_StatusCode expiryOf(UA_DateTime* expiry, UA_ByteString* der) noexcept {
+    return withCertificate(*der, [&](const security::Certificate& certificate) {
+        *expiry =
+            UA_DateTime_fromUnixTime(std::chrono::system_clock::to_time_t(certificate.notAfter()));
+    });
+}
+
 UA_StatusCode subjectOf(UA_String* subject, UA_ByteString* der) noexcept {
-    return guarded([&]() -> UA_StatusCode {
-        const auto certificate = security::Certificate::fromDer(bytesOf(*der));
-        if (!certificate) {
-            return UA_STATUSCODE_BADCERTIFICATEINVALID;
-        }
-        toNative(certificate->subject(), *subject);
-        return UA_STATUSCODE_GOOD;
+    return withCertificate(*der, [&](const security::Certificate& certificate) {
+        toNative(certificate.subject(), *subject);
     });
 }
 

@@ -31,14 +31,10 @@ constexpr std::array kPolicies{
     Policy{kStrongest, UA_ServerConfig_addSecurityPolicyAes256Sha256RsaPss},
 };
 
-UA_ByteString bytesView(const std::string& bytes) noexcept {
-    return viewOf(bytes);
-}
-
 UA_StatusCode addPolicy(const Policy& policy, const Credentials& credentials,
                         UA_ServerConfig& config) {
-    const auto certificate = bytesView(credentials.identity.certificate.der());
-    const auto key = bytesView(credentials.identity.private_key);
+    const auto certificate = viewOf(credentials.identity.certificate.der());
+    const auto key = viewOf(credentials.identity.private_key);
     auto code = policy.add(&config, &certificate, &key);
     for (const auto mode : {UA_MESSAGESECURITYMODE_SIGN, UA_MESSAGESECURITYMODE_SIGNANDENCRYPT}) {
         code = code != UA_STATUSCODE_GOOD
@@ -60,7 +56,7 @@ Result<> outcome(UA_StatusCode code, const security::Identity& identity) {
 Result<> addSecurity(const Credentials& credentials, PeerCheck& peers, UA_ServerConfig& config) {
     peers.install(config.secureChannelPKI);
     peers.installForSessions(config.sessionPKI);
-    const auto certificate = bytesView(credentials.identity.certificate.der());
+    const auto certificate = viewOf(credentials.identity.certificate.der());
     auto code = UA_ServerConfig_addSecurityPolicyNone(&config, &certificate);
     for (const auto& policy : kPolicies) {
         code = code != UA_STATUSCODE_GOOD ? code : addPolicy(policy, credentials, config);
@@ -70,8 +66,8 @@ Result<> addSecurity(const Credentials& credentials, PeerCheck& peers, UA_Server
 }
 
 Result<> replaceIdentity(const security::Identity& identity, UA_ServerConfig& config) {
-    const auto certificate = bytesView(identity.certificate.der());
-    const auto key = bytesView(identity.private_key);
+    const auto certificate = viewOf(identity.certificate.der());
+    const auto key = viewOf(identity.private_key);
     UA_StatusCode code = UA_STATUSCODE_GOOD;
     for (std::size_t i = 0; i < config.securityPoliciesSize; ++i) {
         auto& policy = config.securityPolicies[i];
@@ -91,8 +87,8 @@ Result<> addNoSecurity(UA_ServerConfig& config) {
 }
 
 Result<> addSecurity(const Credentials& credentials, PeerCheck& peers, UA_ClientConfig& config) {
-    const auto certificate = bytesView(credentials.identity.certificate.der());
-    const auto key = bytesView(credentials.identity.private_key);
+    const auto certificate = viewOf(credentials.identity.certificate.der());
+    const auto key = viewOf(credentials.identity.private_key);
     const auto code =
         UA_ClientConfig_setDefaultEncryption(&config, certificate, key, nullptr, 0, nullptr, 0);
     if (code != UA_STATUSCODE_GOOD) {

@@ -12,67 +12,65 @@ namespace {
 
 struct Entry {
     Errc errc;
-    StatusCode status;
+    UA_StatusCode status;
 };
 
-/// The first entry of a code or status is the one used in its direction.
+/// The first entry of a code or status is the one used in its direction. Further codes that a
+/// peer's stack may return follow those that metier sends.
 constexpr std::array kTable{
-    Entry{Errc::invalid_argument, status::kBadInvalidArgument},
-    Entry{Errc::type_mismatch, status::kBadTypeMismatch},
-    Entry{Errc::out_of_range, status::kBadOutOfRange},
-    Entry{Errc::unreachable, status::kBadOutOfRange},
-    Entry{Errc::not_found, status::kBadNotFound},
-    Entry{Errc::already_exists, status::kBadNodeIdExists},
-    Entry{Errc::invalid_state, status::kBadInvalidState},
-    Entry{Errc::locked, status::kBadLocked},
-    Entry{Errc::resource_unavailable, status::kBadResourceUnavailable},
-    Entry{Errc::access_denied, status::kBadUserAccessDenied},
-    Entry{Errc::timeout, status::kBadTimeout},
-    Entry{Errc::connection_lost, status::kBadNoCommunication},
-    Entry{Errc::execution_lost, status::kBadDataLost},
-    Entry{Errc::device_fault, status::kBadDeviceFailure},
-    Entry{Errc::limit_violated, status::kBadOutOfRange},
-    Entry{Errc::not_supported, status::kBadNotSupported},
-    Entry{Errc::cancelled, status::kBadRequestCancelledByClient},
-    Entry{Errc::internal, status::kBadInternalError},
-};
+    Entry{Errc::invalid_argument, UA_STATUSCODE_BADINVALIDARGUMENT},
+    Entry{Errc::type_mismatch, UA_STATUSCODE_BADTYPEMISMATCH},
+    Entry{Errc::out_of_range, UA_STATUSCODE_BADOUTOFRANGE},
+    Entry{Errc::unreachable, UA_STATUSCODE_BADOUTOFRANGE},
+    Entry{Errc::not_found, UA_STATUSCODE_BADNOTFOUND},
+    Entry{Errc::already_exists, UA_STATUSCODE_BADNODEIDEXISTS},
+    Entry{Errc::invalid_state, UA_STATUSCODE_BADINVALIDSTATE},
+    Entry{Errc::locked, UA_STATUSCODE_BADLOCKED},
+    Entry{Errc::resource_unavailable, UA_STATUSCODE_BADRESOURCEUNAVAILABLE},
+    Entry{Errc::access_denied, UA_STATUSCODE_BADUSERACCESSDENIED},
+    Entry{Errc::timeout, UA_STATUSCODE_BADTIMEOUT},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADNOCOMMUNICATION},
+    Entry{Errc::execution_lost, UA_STATUSCODE_BADDATALOST},
+    Entry{Errc::device_fault, UA_STATUSCODE_BADDEVICEFAILURE},
+    Entry{Errc::limit_violated, UA_STATUSCODE_BADOUTOFRANGE},
+    Entry{Errc::not_supported, UA_STATUSCODE_BADNOTSUPPORTED},
+    Entry{Errc::cancelled, UA_STATUSCODE_BADREQUESTCANCELLEDBYCLIENT},
+    Entry{Errc::internal, UA_STATUSCODE_BADINTERNALERROR},
 
-/// Further codes that a peer's stack may return.
-constexpr std::array kFromStack{
-    Entry{Errc::invalid_argument, status::kBadArgumentsMissing},
-    Entry{Errc::invalid_argument, status::kBadTooManyArguments},
-    Entry{Errc::invalid_argument, status::kBadMethodInvalid},
-    Entry{Errc::not_found, status::kBadNodeIdUnknown},
-    Entry{Errc::not_found, status::kBadNoMatch},
-    Entry{Errc::not_found, status::kBadParentNodeIdInvalid},
-    Entry{Errc::not_found, status::kBadSourceNodeIdInvalid},
-    Entry{Errc::not_found, status::kBadTargetNodeIdInvalid},
-    Entry{Errc::not_found, status::kBadTypeDefinitionInvalid},
-    Entry{Errc::not_found, status::kBadReferenceTypeIdInvalid},
-    Entry{Errc::already_exists, status::kBadDuplicateReferenceNotAllowed},
-    Entry{Errc::already_exists, status::kBadBrowseNameDuplicated},
-    Entry{Errc::invalid_argument, status::kBadNodeClassInvalid},
-    Entry{Errc::not_supported, status::kBadWriteNotSupported},
-    Entry{Errc::invalid_state, status::kBadStateNotActive},
-    Entry{Errc::invalid_state, status::kBadNotExecutable},
-    Entry{Errc::access_denied, status::kBadNotWritable},
-    Entry{Errc::access_denied, status::kBadIdentityTokenRejected},
-    Entry{Errc::access_denied, status::kBadSecurityChecksFailed},
-    Entry{Errc::access_denied, status::kBadCertificateUntrusted},
-    Entry{Errc::resource_unavailable, status::kBadTooManySessions},
-    Entry{Errc::resource_unavailable, status::kBadOutOfMemory},
-    Entry{Errc::timeout, status::kBadRequestTimeout},
-    Entry{Errc::connection_lost, status::kBadCommunicationError},
-    Entry{Errc::connection_lost, status::kBadShutdown},
-    Entry{Errc::connection_lost, status::kBadServerNotConnected},
-    Entry{Errc::connection_lost, status::kBadSessionIdInvalid},
-    Entry{Errc::connection_lost, status::kBadSessionClosed},
-    Entry{Errc::connection_lost, status::kBadSessionNotActivated},
-    Entry{Errc::connection_lost, status::kBadSecureChannelClosed},
-    Entry{Errc::connection_lost, status::kBadNotConnected},
-    Entry{Errc::connection_lost, status::kBadConnectionRejected},
-    Entry{Errc::connection_lost, status::kBadDisconnect},
-    Entry{Errc::connection_lost, status::kBadConnectionClosed},
+    Entry{Errc::invalid_argument, UA_STATUSCODE_BADARGUMENTSMISSING},
+    Entry{Errc::invalid_argument, UA_STATUSCODE_BADTOOMANYARGUMENTS},
+    Entry{Errc::invalid_argument, UA_STATUSCODE_BADMETHODINVALID},
+    Entry{Errc::not_found, UA_STATUSCODE_BADNODEIDUNKNOWN},
+    Entry{Errc::not_found, UA_STATUSCODE_BADNOMATCH},
+    Entry{Errc::not_found, UA_STATUSCODE_BADPARENTNODEIDINVALID},
+    Entry{Errc::not_found, UA_STATUSCODE_BADSOURCENODEIDINVALID},
+    Entry{Errc::not_found, UA_STATUSCODE_BADTARGETNODEIDINVALID},
+    Entry{Errc::not_found, UA_STATUSCODE_BADTYPEDEFINITIONINVALID},
+    Entry{Errc::not_found, UA_STATUSCODE_BADREFERENCETYPEIDINVALID},
+    Entry{Errc::already_exists, UA_STATUSCODE_BADDUPLICATEREFERENCENOTALLOWED},
+    Entry{Errc::already_exists, UA_STATUSCODE_BADBROWSENAMEDUPLICATED},
+    Entry{Errc::invalid_argument, UA_STATUSCODE_BADNODECLASSINVALID},
+    Entry{Errc::not_supported, UA_STATUSCODE_BADWRITENOTSUPPORTED},
+    Entry{Errc::invalid_state, UA_STATUSCODE_BADSTATENOTACTIVE},
+    Entry{Errc::invalid_state, UA_STATUSCODE_BADNOTEXECUTABLE},
+    Entry{Errc::access_denied, UA_STATUSCODE_BADNOTWRITABLE},
+    Entry{Errc::access_denied, UA_STATUSCODE_BADIDENTITYTOKENREJECTED},
+    Entry{Errc::access_denied, UA_STATUSCODE_BADSECURITYCHECKSFAILED},
+    Entry{Errc::access_denied, UA_STATUSCODE_BADCERTIFICATEUNTRUSTED},
+    Entry{Errc::resource_unavailable, UA_STATUSCODE_BADTOOMANYSESSIONS},
+    Entry{Errc::resource_unavailable, UA_STATUSCODE_BADOUTOFMEMORY},
+    Entry{Errc::timeout, UA_STATUSCODE_BADREQUESTTIMEOUT},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADCOMMUNICATIONERROR},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADSHUTDOWN},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADSERVERNOTCONNECTED},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADSESSIONIDINVALID},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADSESSIONCLOSED},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADSESSIONNOTACTIVATED},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADSECURECHANNELCLOSED},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADNOTCONNECTED},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADCONNECTIONREJECTED},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADDISCONNECT},
+    Entry{Errc::connection_lost, UA_STATUSCODE_BADCONNECTIONCLOSED},
 };
 
 }  // namespace
@@ -86,17 +84,14 @@ std::string StatusCode::name() const {
 StatusCode statusFrom(Errc code) noexcept {
     const auto* found = std::find_if(kTable.begin(), kTable.end(),
                                      [code](const Entry& entry) { return entry.errc == code; });
-    return found == kTable.end() ? status::kBadInternalError : found->status;
+    return found == kTable.end() ? status::kBadInternalError : StatusCode(found->status);
 }
 
 Errc errcFrom(StatusCode code) noexcept {
-    const auto matches = [code](const Entry& entry) { return entry.status == code; };
-    const auto* ours = std::find_if(kTable.begin(), kTable.end(), matches);
-    if (ours != kTable.end()) {
-        return ours->errc;
-    }
-    const auto* stack = std::find_if(kFromStack.begin(), kFromStack.end(), matches);
-    return stack == kFromStack.end() ? Errc::internal : stack->errc;
+    const auto* found = std::find_if(kTable.begin(), kTable.end(), [code](const Entry& entry) {
+        return entry.status == code.value();
+    });
+    return found == kTable.end() ? Errc::internal : found->errc;
 }
 
 Error errorFrom(StatusCode code, std::string_view doing) {

@@ -33,11 +33,7 @@ struct ArrayDeleter {
 using ArrayOwner = std::unique_ptr<void, ArrayDeleter>;
 
 ArrayOwner newArray(std::size_t size, const UA_DataType& type) {
-    void* array = UA_Array_new(size, &type);
-    if (array == nullptr) {
-        throw std::bad_alloc();
-    }
-    return {array, ArrayDeleter{size, &type}};
+    return {checkAllocated(UA_Array_new(size, &type)), ArrayDeleter{size, &type}};
 }
 
 template <ScalarType T>
@@ -47,7 +43,7 @@ void fill(const T& value, UA_Variant& target) {
     UA_Variant_setScalar(&target, memory.release(), &nativeType<T>());
 }
 
-template <ScalarType T>
+template <typename T>
 void fill(const std::vector<T>& values, UA_Variant& target) {
     auto memory = newArray(values.size(), nativeType<T>());
     auto* array = static_cast<typename Native<T>::Type*>(memory.get());
@@ -55,17 +51,6 @@ void fill(const std::vector<T>& values, UA_Variant& target) {
         Native<T>::write(values[i], array[i]);
     }
     UA_Variant_setArray(&target, memory.release(), values.size(), &nativeType<T>());
-}
-
-/// The content of an ExtensionObject as a T, if it was decoded and is one.
-template <ScalarType T>
-const typename Native<T>::Type* decoded(const UA_ExtensionObject& object) noexcept {
-    const bool has_content = object.encoding == UA_EXTENSIONOBJECT_DECODED ||
-                             object.encoding == UA_EXTENSIONOBJECT_DECODED_NODELETE;
-    if (!has_content || object.content.decoded.type != &nativeType<T>()) {
-        return nullptr;
-    }
-    return static_cast<const typename Native<T>::Type*>(object.content.decoded.data);
 }
 
 bool isEnumeration(const UA_DataType& type) noexcept {
@@ -89,7 +74,8 @@ const typename Native<T>::Type* element(const UA_Variant& variant, std::size_t i
         return static_cast<const Type*>(variant.data) + index;
     }
     if (variant.type == &UA_TYPES[UA_TYPES_EXTENSIONOBJECT]) {
-        return decoded<T>(static_cast<const UA_ExtensionObject*>(variant.data)[index]);
+        return decodedAs<const Type>(static_cast<const UA_ExtensionObject*>(variant.data)[index],
+                                     nativeType<T>());
     }
     return nullptr;
 }
@@ -231,14 +217,8 @@ Value Value::of(const T& value) {
 }
 
 Value Value::ofMixed(const std::vector<Value>& values) {
-    const UA_DataType& type = UA_TYPES[UA_TYPES_VARIANT];
-    auto memory = newArray(values.size(), type);
-    auto* array = static_cast<UA_Variant*>(memory.get());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        checkAllocated(UA_Variant_copy(&ValueAccess::native(values[i]), &array[i]));
-    }
     Value result;
-    UA_Variant_setArray(&ValueAccess::native(result), memory.release(), values.size(), &type);
+    fill(values, ValueAccess::native(result));
     return result;
 }
 
@@ -257,15 +237,8 @@ Value Value::ofRows(const std::vector<std::vector<double>>& rows) {
     }
     Value result = of(flat);
     auto& variant = ValueAccess::native(result);
-    auto* dimensions =
-        static_cast<UA_UInt32*>(UA_Array_new(kMatrixRank, &UA_TYPES[UA_TYPES_UINT32]));
-    if (dimensions == nullptr) {
-        throw std::bad_alloc();
-    }
-    dimensions[0] = static_cast<UA_UInt32>(rows.size());
-    dimensions[1] = static_cast<UA_UInt32>(width);
-    variant.arrayDimensions = dimensions;
-    variant.arrayDimensionsSize = kMatrixRank;
+    toNative(std::vector{static_cast<UA_UInt32>(rows.size()), static_cast<UA_UInt32>(width)},
+             variant.arrayDimensions, variant.arrayDimensionsSize);
     return result;
 }
 

@@ -65,21 +65,36 @@ UA_Byte notifierBits(EventNotifier notifier) noexcept {
     return notifier == EventNotifier::subscribable ? UA_EVENTNOTIFIER_SUBSCRIBE_TO_EVENT : 0;
 }
 
-std::vector<UA_Argument> viewsOf(const std::vector<Argument>& arguments,
-                                 std::vector<std::vector<UA_UInt32>>& dimensions) {
-    std::vector<UA_Argument> views;
-    for (const auto& argument : arguments) {
-        dimensions.emplace_back(argument.array_dimensions);
-        UA_Argument view{};
-        view.name = viewOf(argument.name);
-        view.dataType = viewOf(argument.data_type);
-        view.valueRank = argument.value_rank;
-        view.arrayDimensionsSize = dimensions.back().size();
-        view.arrayDimensions = dimensions.back().data();
-        view.description = viewOf(argument.description);
-        views.push_back(view);
-    }
-    return views;
+/// Adds what the type brings along to a node that was begun.
+UA_StatusCode finish(UA_Server* server, UA_StatusCode begun, const NodeId& id, Children children) {
+    return begun == UA_STATUSCODE_GOOD && children == Children::mandatory
+               ? UA_Server_addNode_finish(server, viewOf(id))
+               : begun;
+}
+
+UA_StatusCode add(UA_Server* server, const NewNode& node, const VariableSpec& spec) {
+    auto attributes = node.describe(UA_VariableAttributes_default);
+    std::vector<UA_UInt32> dimensions(spec.array_dimensions);
+    attributes.value = ValueAccess::native(spec.value);
+    attributes.dataType = viewOf(spec.data_type);
+    attributes.valueRank = spec.value_rank;
+    attributes.arrayDimensions = dimensions.data();
+    attributes.arrayDimensionsSize = dimensions.size();
+    attributes.accessLevel = accessBits(spec.access);
+    const auto begun =
+        UA_Server_addNode_begin(server, UA_NODECLASS_VARIABLE, viewOf(node.id), node.parent,
+                                node.reference, node.browse_name, viewOf(spec.type), &attributes,
+                                &UA_TYPES[UA_TYPES_VARIABLEATTRIBUTES], nullptr, nullptr);
+    return finish(server, begun, node.id, spec.children);
+}
+
+/// Adds a Method without arguments.
+UA_StatusCode addBareMethod(UA_Server* server, const NewNode& node) {
+    auto attributes = node.describe(UA_MethodAttributes_default);
+    attributes.executable = true;
+    return UA_Server_addMethodNode(server, viewOf(node.id), node.parent, node.reference,
+                                   node.browse_name, attributes, nullptr, 0, nullptr, 0, nullptr,
+                                   nullptr, nullptr);
 }
 
 /// Adds the Property of a Method that describes its arguments; none, if there are none.
@@ -89,45 +104,20 @@ UA_StatusCode addArguments(UA_Server* server, const NodeId& method, const std::s
     if (arguments.empty()) {
         return UA_STATUSCODE_GOOD;
     }
-    const NodeSpec spec{{}, method, ids::kHasProperty, {0, name}, {}, {}};
-    const NewNode node(spec);
-    std::vector<std::vector<UA_UInt32>> dimensions;
-    auto views = viewsOf(arguments, dimensions);
-    auto attributes = node.describe(UA_VariableAttributes_default);
-    auto size = static_cast<UA_UInt32>(views.size());
-    UA_Variant_setArray(&attributes.value, views.data(), views.size(),
-                        &UA_TYPES[UA_TYPES_ARGUMENT]);
-    attributes.dataType = UA_TYPES[UA_TYPES_ARGUMENT].typeId;
-    attributes.valueRank = UA_VALUERANK_ONE_DIMENSION;
-    attributes.arrayDimensions = &size;
-    attributes.arrayDimensionsSize = 1;
-    return UA_Server_addVariableNode(server, viewOf(node.id), node.parent, node.reference,
-                                     node.browse_name, viewOf(ids::kPropertyType), attributes,
-                                     nullptr, nullptr);
+    const VariableSpec spec{
+        .node = {.parent = method, .reference = ids::kHasProperty, .browse_name = {0, name}},
+        .type = ids::kPropertyType,
+        .data_type = NodeId(0, UA_NS0ID_ARGUMENT),
+        .value_rank = UA_VALUERANK_ONE_DIMENSION,
+        .array_dimensions = {static_cast<std::uint32_t>(arguments.size())},
+        .value = Value::of(arguments)};
+    return add(server, NewNode(spec.node), spec);
 }
 
-std::string textOf(std::span<const QualifiedName> path) {
-    std::string text;
-    for (const auto& name : path) {
-        text += (text.empty() ? "" : "/") + name.toString();
-    }
-    return text;
-}
-
-/// Adds what the type brings along to a node that was begun.
-UA_StatusCode finish(UA_Server* server, UA_StatusCode begun, const NodeId& id, Children children) {
-    return begun == UA_STATUSCODE_GOOD && children == Children::mandatory
-               ? UA_Server_addNode_finish(server, viewOf(id))
-               : begun;
-}
-
-Reference referenceFrom(const UA_ReferenceDescription& native) {
-    return {fromNative(native.referenceTypeId),
-            fromNative(native.nodeId.nodeId),
-            fromNative(native.browseName),
-            fromNative(native.displayName),
-            static_cast<NodeClass>(native.nodeClass),
-            fromNative(native.typeDefinition.nodeId)};
+UA_StatusCode addReference(UA_Server* server, const NodeId& source, const NodeId& type,
+                           const NodeId& target) {
+    return UA_Server_addReference(server, viewOf(source), viewOf(type),
+                                  UA_EXPANDEDNODEID_NODEID(viewOf(target)), true);
 }
 
 }  // namespace
@@ -189,56 +179,33 @@ Result<> AddressSpace::copyMethod(const NodeId& object, const Reference& method)
     NodeSpec spec{
         {}, object, method.type, method.browse_name, method.display_name, fromNative(*description)};
     const NewNode node(spec);
-    auto attributes = node.describe(UA_MethodAttributes_default);
-    attributes.executable = true;
-    auto code = UA_Server_deleteReference(server, node.parent, viewOf(method.type), true,
-                                          UA_EXPANDEDNODEID_NODEID(original), true);
-    if (code == UA_STATUSCODE_GOOD) {
-        code = UA_Server_addMethodNode(server, viewOf(node.id), node.parent, node.reference,
-                                       node.browse_name, attributes, nullptr, 0, nullptr, 0,
-                                       nullptr, nullptr, nullptr);
-    }
+    auto code = inOrder(
+        [&] {
+            return UA_Server_deleteReference(server, node.parent, viewOf(method.type), true,
+                                             UA_EXPANDEDNODEID_NODEID(original), true);
+        },
+        [&] { return addBareMethod(server, node); });
     for (const auto& argument : arguments) {
-        if (code == UA_STATUSCODE_GOOD) {
-            code = UA_Server_addReference(server, viewOf(node.id), viewOf(ids::kHasProperty),
-                                          UA_EXPANDEDNODEID_NODEID(viewOf(argument.target)), true);
-        }
+        code = code != UA_STATUSCODE_GOOD
+                   ? code
+                   : opcua::addReference(server, node.id, ids::kHasProperty, argument.target);
     }
     return outcome(code, "copy Method", node.id);
 }
 
 Result<NodeId> AddressSpace::addVariable(const VariableSpec& spec) {
     const NewNode node(spec.node);
-    auto attributes = node.describe(UA_VariableAttributes_default);
-    std::vector<UA_UInt32> dimensions(spec.array_dimensions);
-    attributes.value = ValueAccess::native(spec.value);
-    attributes.dataType = viewOf(spec.data_type);
-    attributes.valueRank = spec.value_rank;
-    attributes.arrayDimensions = dimensions.data();
-    attributes.arrayDimensionsSize = dimensions.size();
-    attributes.accessLevel = accessBits(spec.access);
-    const auto begun =
-        UA_Server_addNode_begin(core_.native(), UA_NODECLASS_VARIABLE, viewOf(node.id), node.parent,
-                                node.reference, node.browse_name, viewOf(spec.type), &attributes,
-                                &UA_TYPES[UA_TYPES_VARIABLEATTRIBUTES], nullptr, nullptr);
-    const auto code = finish(core_.native(), begun, node.id, spec.children);
-    METIER_TRY(outcome(code, "add Variable", node.id));
+    METIER_TRY(outcome(add(core_.native(), node, spec), "add Variable", node.id));
     return node.id;
 }
 
 Result<NodeId> AddressSpace::addMethod(const MethodSpec& spec) {
     const NewNode node(spec.node);
-    auto attributes = node.describe(UA_MethodAttributes_default);
-    attributes.executable = true;
-    auto code = UA_Server_addMethodNode(core_.native(), viewOf(node.id), node.parent,
-                                        node.reference, node.browse_name, attributes, nullptr, 0,
-                                        nullptr, 0, nullptr, nullptr, nullptr);
-    if (code == UA_STATUSCODE_GOOD) {
-        code = addArguments(core_.native(), node.id, "InputArguments", spec.inputs);
-    }
-    if (code == UA_STATUSCODE_GOOD) {
-        code = addArguments(core_.native(), node.id, "OutputArguments", spec.outputs);
-    }
+    UA_Server* server = core_.native();
+    const auto code =
+        inOrder([&] { return addBareMethod(server, node); },
+                [&] { return addArguments(server, node.id, "InputArguments", spec.inputs); },
+                [&] { return addArguments(server, node.id, "OutputArguments", spec.outputs); });
     METIER_TRY(outcome(code, "add Method", node.id));
     METIER_TRY(setMethod(node.id, spec.handler));
     return node.id;
@@ -247,8 +214,7 @@ Result<NodeId> AddressSpace::addMethod(const MethodSpec& spec) {
 Result<> AddressSpace::addReference(const NodeId& source, const NodeId& type,
                                     const NodeId& target) {
     core_.structureChanged();
-    return outcome(UA_Server_addReference(core_.native(), viewOf(source), viewOf(type),
-                                          UA_EXPANDEDNODEID_NODEID(viewOf(target)), true),
+    return outcome(opcua::addReference(core_.native(), source, type, target),
                    fmt::format("add reference to {} from", target.toString()), source);
 }
 
@@ -284,9 +250,7 @@ Result<std::vector<Reference>> AddressSpace::browse(const NodeId& id,
     description.nodeId = viewOf(id);
     description.referenceTypeId = viewOf(filter.type);
     description.includeSubtypes = true;
-    description.browseDirection = filter.direction == BrowseFilter::Direction::forward
-                                      ? UA_BROWSEDIRECTION_FORWARD
-                                      : UA_BROWSEDIRECTION_INVERSE;
+    description.browseDirection = nativeOf(filter.direction);
     description.resultMask = UA_BROWSERESULTMASK_ALL;
     Owned<UA_BrowseResult> result(UA_Server_browse(core_.native(), 0, &description),
                                   UA_TYPES[UA_TYPES_BROWSERESULT]);
@@ -296,7 +260,7 @@ Result<std::vector<Reference>> AddressSpace::browse(const NodeId& id,
     std::vector<Reference> references;
     references.reserve(result->referencesSize);
     for (std::size_t i = 0; i < result->referencesSize; ++i) {
-        references.push_back(referenceFrom(result->references[i]));
+        references.push_back(fromNative(result->references[i]));
     }
     return references;
 }
@@ -312,13 +276,10 @@ Result<VariableShape> AddressSpace::shapeOf(const NodeId& variable) const {
     VariableShape shape;
     Owned<UA_NodeId> data_type(UA_TYPES[UA_TYPES_NODEID]);
     Owned<UA_Variant> dimensions(UA_TYPES[UA_TYPES_VARIANT]);
-    auto code = UA_Server_readDataType(server, id, data_type.get());
-    if (code == UA_STATUSCODE_GOOD) {
-        code = UA_Server_readValueRank(server, id, &shape.value_rank);
-    }
-    if (code == UA_STATUSCODE_GOOD) {
-        code = UA_Server_readArrayDimensions(server, id, dimensions.get());
-    }
+    const auto code =
+        inOrder([&] { return UA_Server_readDataType(server, id, data_type.get()); },
+                [&] { return UA_Server_readValueRank(server, id, &shape.value_rank); },
+                [&] { return UA_Server_readArrayDimensions(server, id, dimensions.get()); });
     if (code != UA_STATUSCODE_GOOD) {
         return fail(outcome(code, "read the data type of", variable).error());
     }
@@ -379,29 +340,25 @@ Result<> AddressSpace::write(const NodeId& variable, const DataValue& value) {
 }
 
 Result<> AddressSpace::setDataSource(const NodeId& variable, DataSource source) {
-    METIER_ASSIGN(auto hooks, core_.hooks().of(core_.native(), variable));
+    UA_Server* server = core_.native();
+    const UA_NodeId id = viewOf(variable);
+    METIER_ASSIGN(auto hooks, core_.hooks().of(server, variable));
     hooks->work = std::move(source);
-    auto code = UA_Server_setVariableNode_dataSource(core_.native(), viewOf(variable),
-                                                     dataSourceCallbacks());
-    if (code == UA_STATUSCODE_GOOD) {
-        code = allowSourceTime(core_.native(), viewOf(variable));
-    }
+    const auto code = inOrder(
+        [&] { return UA_Server_setVariableNode_dataSource(server, id, dataSourceCallbacks()); },
+        [&] { return allowSourceTime(server, id); });
     return outcome(code, "give a source to", variable);
 }
 
 Result<> AddressSpace::setHandler(const NodeId& variable, VariableSlot& slot) {
-    auto code = UA_Server_setNodeContext(core_.native(), viewOf(variable), &slot);
-    if (code == UA_STATUSCODE_GOOD) {
-        code =
-            UA_Server_setVariableNode_dataSource(core_.native(), viewOf(variable), slotCallbacks());
-    }
-    if (code == UA_STATUSCODE_GOOD) {
-        // Else the stack drops the time stamps of what is read and written.
-        code = UA_Server_setVariableNodeDynamic(core_.native(), viewOf(variable), true);
-    }
-    if (code == UA_STATUSCODE_GOOD) {
-        code = allowSourceTime(core_.native(), viewOf(variable));
-    }
+    UA_Server* server = core_.native();
+    const UA_NodeId id = viewOf(variable);
+    const auto code =
+        inOrder([&] { return UA_Server_setNodeContext(server, id, &slot); },
+                [&] { return UA_Server_setVariableNode_dataSource(server, id, slotCallbacks()); },
+                // Else the stack drops the time stamps of what is read and written.
+                [&] { return UA_Server_setVariableNodeDynamic(server, id, true); },
+                [&] { return allowSourceTime(server, id); });
     return outcome(code, "give a handler to", variable);
 }
 
@@ -429,11 +386,6 @@ Result<> AddressSpace::setEventNotifier(const NodeId& object, EventNotifier noti
     return outcome(
         UA_Server_writeEventNotifier(core_.native(), viewOf(object), notifierBits(notifier)),
         "set the event notifier of", object);
-}
-
-Result<> AddressSpace::setDescription(const NodeId& id, const LocalizedText& text) {
-    return outcome(UA_Server_writeDescription(core_.native(), viewOf(id), viewOf(text)), "describe",
-                   id);
 }
 
 }  // namespace metier::opcua

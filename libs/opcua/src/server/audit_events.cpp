@@ -46,84 +46,34 @@ NodeId typeOf(const AuditRecord& record) {
     return ids::kAuditEventType;
 }
 
-/// As OPC 10000-5 asks for each type.
-const char* sourceNameOf(AuditKind kind) {
-    switch (kind) {
+/// Content of an event that depends on the kind of its record.
+struct Details {
+    const char* source_name = "Server";  ///< as OPC 10000-5 asks for each type
+    std::vector<std::pair<const char*, Value>> fields{};
+};
+
+Details detailsOf(const AuditRecord& record) {
+    switch (record.kind) {
         case AuditKind::called:
         case AuditKind::denied:
-            return "Attribute/Call";
+            return {"Attribute/Call",
+                    {{"MethodId", Value::of(record.method)},
+                     {"InputArguments", Value::of(record.inputs)}}};
         case AuditKind::login:
         case AuditKind::login_refused:
-            return "Session/ActivateSession";
+            return {"Session/ActivateSession", {{"SessionId", Value::of(record.session.id)}}};
         case AuditKind::session_closed:
-            return "Session/CloseSession";
+            return {"Session/CloseSession", {{"SessionId", Value::of(record.session.id)}}};
         case AuditKind::peer_refused:
-            return "Security/Certificate";
+            return {
+                "Security/Certificate",
+                {{"Certificate",
+                  Value::of(ByteString{{record.certificate.begin(), record.certificate.end()}})}}};
         case AuditKind::left_out:
         case AuditKind::acted:
             break;
     }
-    return "Server";
-}
-
-enum class Shape { plain, method, session, certificate };
-
-Shape shapeOf(const NodeId& type) {
-    if (type == ids::kAuditUpdateMethodEventType) {
-        return Shape::method;
-    }
-    if (type == ids::kAuditSessionEventType || type == ids::kAuditActivateSessionEventType) {
-        return Shape::session;
-    }
-    return type == ids::kAuditEventType || type == ids::kAuditSecurityEventType
-               ? Shape::plain
-               : Shape::certificate;
-}
-
-std::vector<BrowsePath> fieldsOf(const NodeId& type) {
-    std::vector<BrowsePath> fields;
-    for (const auto* name :
-         {"ActionTimeStamp", "Status", "ServerId", "ClientAuditEntryId", "ClientUserId"}) {
-        fields.push_back({{0, name}});
-    }
-    switch (shapeOf(type)) {
-        case Shape::method:
-            fields.push_back({{0, "MethodId"}});
-            fields.push_back({{0, "InputArguments"}});
-            break;
-        case Shape::session:
-            fields.push_back({{0, "SessionId"}});
-            break;
-        case Shape::certificate:
-            fields.push_back({{0, "Certificate"}});
-            break;
-        case Shape::plain:
-            break;
-    }
-    return fields;
-}
-
-/// Values in the order of fieldsOf(). The stack does not give the AuditEntryId of a request.
-std::vector<Value> valuesOf(const AuditRecord& record, Shape shape, const std::string& server) {
-    std::vector<Value> values{Value::of(record.time), Value::of(!record.status.isBad()),
-                              Value::of(server), Value::of(std::string()),
-                              Value::of(record.session.user)};
-    switch (shape) {
-        case Shape::method:
-            values.push_back(Value::of(record.method));
-            values.push_back(Value::of(record.inputs));
-            break;
-        case Shape::session:
-            values.push_back(Value::of(record.session.id));
-            break;
-        case Shape::certificate:
-            values.push_back(
-                Value::of(ByteString{{record.certificate.begin(), record.certificate.end()}}));
-            break;
-        case Shape::plain:
-            break;
-    }
-    return values;
+    return {};
 }
 
 std::string whoIs(const Session& session) {
@@ -158,11 +108,11 @@ std::string messageOf(const AuditRecord& record) {
 
 }  // namespace
 
-EventEmitter* AuditEvents::emitterOf(const NodeId& type) {
+EventEmitter* AuditEvents::emitterOf(const NodeId& type, const std::vector<BrowsePath>& fields) {
     if (const auto known = emitters_.find(type); known != emitters_.end()) {
         return &known->second;
     }
-    auto made = EventEmitter::create(core_, type, fieldsOf(type), EventAudience::auditors);
+    auto made = EventEmitter::create(core_, type, fields, EventAudience::auditors);
     if (!made) {
         core_.log().error("no audit events: {}", made.error().message);
         return nullptr;
@@ -171,18 +121,28 @@ EventEmitter* AuditEvents::emitterOf(const NodeId& type) {
 }
 
 void AuditEvents::emit(const AuditRecord& record) {
-    const auto type = typeOf(record);
-    auto* emitter = emitterOf(type);
+    auto [source_name, fields] = detailsOf(record);
+    // The stack does not give the AuditEntryId of a request.
+    fields.insert(fields.begin(), {{"ActionTimeStamp", Value::of(record.time)},
+                                   {"Status", Value::of(!record.status.isBad())},
+                                   {"ServerId", Value::of(core_.options().application_uri)},
+                                   {"ClientAuditEntryId", Value::of(std::string())},
+                                   {"ClientUserId", Value::of(record.session.user)}});
+    std::vector<BrowsePath> paths;
+    Event event;
+    for (auto& [name, value] : fields) {
+        paths.push_back({{0, name}});
+        event.fields.push_back(std::move(value));
+    }
+    auto* emitter = emitterOf(typeOf(record), paths);
     if (emitter == nullptr) {
         return;
     }
-    Event event;
     event.source = ids::kServer;
-    event.source_name = sourceNameOf(record.kind);
+    event.source_name = source_name;
     event.time = record.time;
     event.severity = record.status.isBad() ? kRefused : kDone;
     event.message = {"en", messageOf(record)};
-    event.fields = valuesOf(record, shapeOf(type), core_.options().application_uri);
     if (const auto emitted = emitter->emit(event); !emitted) {
         core_.log().error("no audit event: {}", emitted.error().message);
     }

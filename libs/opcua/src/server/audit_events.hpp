@@ -16,7 +16,7 @@ public:
     void emit(const AuditRecord& record);
 
 private:
-    EventEmitter* emitterOf(const NodeId& type);
+    EventEmitter* emitterOf(const NodeId& type, const std::vector<BrowsePath>& fields);
 
     ServerCore& core_;
     std::unordered_map<NodeId, EventEmitter> emitters_;  ///< made when first needed

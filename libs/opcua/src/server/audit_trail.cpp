@@ -52,11 +52,8 @@ Session shortened(const Session& session) {
             session.role};
 }
 
-std::string browseNameOf(UA_Server* server, const NodeId& node) {
-    Owned<UA_QualifiedName> name(UA_TYPES[UA_TYPES_QUALIFIEDNAME]);
-    return UA_Server_readBrowseName(server, viewOf(node), name.get()) == UA_STATUSCODE_GOOD
-               ? textFrom(name->name)
-               : std::string();
+std::string browseNameOf(ServerCore& core, const NodeId& node) {
+    return core.nodes().browseNameOf(node).value_or(QualifiedName()).name;
 }
 
 AuditRecord recordOf(AuditKind kind, std::string event) {
@@ -70,6 +67,16 @@ AuditRecord recordOf(AuditKind kind, std::string event) {
 AuditRecord recordOf(AuditKind kind, std::string event, const Session& session) {
     auto record = recordOf(kind, std::move(event));
     record.session = shortened(session);
+    return record;
+}
+
+/// Record of a call; its event is still empty.
+AuditRecord recordOf(AuditKind kind, const CallContext& context, ServerCore& core) {
+    auto record = recordOf(kind, {}, context.session);
+    record.object = context.object;
+    record.object_name = browseNameOf(core, context.object);
+    record.method = context.method;
+    record.method_name = browseNameOf(core, context.method);
     return record;
 }
 
@@ -89,12 +96,8 @@ void AuditTrail::called(const CallContext& context, std::span<const Value> input
     if (nobodyCares()) {
         return;
     }
-    auto record =
-        recordOf(AuditKind::called, browseNameOf(core_.native(), context.method), context.session);
-    record.object = context.object;
-    record.object_name = browseNameOf(core_.native(), context.object);
-    record.method = context.method;
-    record.method_name = record.event;
+    auto record = recordOf(AuditKind::called, context, core_);
+    record.event = record.method_name;
     for (const auto& input : inputs.first(std::min(inputs.size(), kMostInputs))) {
         record.inputs.push_back(shortText(input));
     }
@@ -107,11 +110,8 @@ void AuditTrail::denied(const CallContext& context) {
     if (!passes(AuditKind::denied)) {
         return;
     }
-    auto record = recordOf(AuditKind::denied, "Denied", context.session);
-    record.object = context.object;
-    record.object_name = browseNameOf(core_.native(), context.object);
-    record.method = context.method;
-    record.method_name = browseNameOf(core_.native(), context.method);
+    auto record = recordOf(AuditKind::denied, context, core_);
+    record.event = "Denied";
     record.status = status::kBadUserAccessDenied;
     note(std::move(record));
 }
@@ -158,7 +158,7 @@ void AuditTrail::acted(const OwnAct& act) {
     auto record = recordOf(AuditKind::acted, shortText(act.event));
     record.session.name = "server";
     record.object = act.object;
-    record.object_name = browseNameOf(core_.native(), act.object);
+    record.object_name = browseNameOf(core_, act.object);
     record.text = shortText(act.text);
     note(std::move(record));
 }

@@ -192,14 +192,13 @@ UA_Boolean userExecutable(UA_Server* server, UA_AccessControl* /*control*/,
     if (!executable) {
         return false;
     }
-    guarded([&]() -> UA_StatusCode {
+    guarded([&] {
         auto& core = ServerCore::of(server);
         const auto* hooks = core.hooks().at(method_context);
         const auto* method = hooks == nullptr ? nullptr : std::get_if<MethodHooks>(&hooks->work);
         if (method != nullptr && method->executable) {
             executable = method->executable(core.sessions().of(session_context));
         }
-        return UA_STATUSCODE_GOOD;
     });
     return executable;
 }

@@ -37,10 +37,9 @@ struct ServerCore::Callbacks {
         if (id->namespaceIndex != 1 || id->identifierType != UA_NODEIDTYPE_GUID) {
             return UA_STATUSCODE_GOOD;
         }
-        return guarded([&]() -> UA_StatusCode {
+        return guarded([&] {
             auto& core = ServerCore::of(server);
             core.sessions_.created(server, fromNative(*id), core.loop_.currentConnection());
-            return UA_STATUSCODE_GOOD;
         });
     }
 
@@ -75,7 +74,7 @@ struct ServerCore::Callbacks {
         if (attribute != UA_ATTRIBUTEID_EVENTNOTIFIER) {
             return;
         }
-        guarded([&]() -> UA_StatusCode {
+        guarded([&] {
             auto& watch = ServerCore::of(server).watch_;
             const NodeId owner = session == nullptr ? NodeId() : fromNative(*session);
             if (removed) {
@@ -83,7 +82,6 @@ struct ServerCore::Callbacks {
             } else {
                 watch.added(fromNative(*node), owner);
             }
-            return UA_STATUSCODE_GOOD;
         });
     }
 };
@@ -151,11 +149,7 @@ Result<> ServerCore::build() {
         auditorsOnly());
     // The stack's own source says false.
     return nodes_.setDataSource(ids::kServerAuditing,
-                                {.read =
-                                     [](const Session&) {
-                                         return DataValue{Value::of(true), {}, {}, {}};
-                                     },
-                                 .write = {}});
+                                {[](const Session&) { return DataValue{Value::of(true)}; }});
 }
 
 /// Installs the check of peers' certificates; for a closed server.
@@ -283,9 +277,6 @@ void ServerCore::tellDenial(const CallContext& context) {
                context.object.toString(), sanitise(context.session.user),
                security::toString(context.session.role));
     audit_.denied(context);
-    if (options_.security && options_.security->on_denied) {
-        options_.security->on_denied({context.session, context.object, context.method});
-    }
 }
 
 Result<> ServerCore::renewIdentity(const security::Identity& identity) {
@@ -350,11 +341,7 @@ bool ServerCore::onServerThread() const noexcept {
 }
 
 void ServerCore::runGuarded(const std::function<void()>& work) noexcept {
-    const auto done = guarded([&]() -> UA_StatusCode {
-        work();
-        return UA_STATUSCODE_GOOD;
-    });
-    if (done != UA_STATUSCODE_GOOD) {
+    if (guarded(work) != UA_STATUSCODE_GOOD) {
         log().error("posted work or a timer threw an exception");
     }
 }

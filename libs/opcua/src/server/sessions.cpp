@@ -16,24 +16,6 @@ namespace {
 constexpr std::uint8_t kAllAccess = 0xFF;
 constexpr std::uint8_t kReadAccess = UA_ACCESSLEVELMASK_READ | UA_ACCESSLEVELMASK_HISTORYREAD;
 
-/// Takes the same time wherever the first difference is.
-bool samePassword(std::string_view left, std::string_view right) noexcept {
-    unsigned difference = left.size() == right.size() ? 0U : 1U;
-    for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
-        difference |= static_cast<unsigned char>(left[i]) ^ static_cast<unsigned char>(right[i]);
-    }
-    return difference == 0;
-}
-
-template <typename Native>
-const Native* decodedAs(const UA_ExtensionObject& token, const UA_DataType& type) noexcept {
-    const bool decoded = token.encoding == UA_EXTENSIONOBJECT_DECODED ||
-                         token.encoding == UA_EXTENSIONOBJECT_DECODED_NODELETE;
-    return decoded && token.content.decoded.type == &type
-               ? static_cast<const Native*>(token.content.decoded.data)
-               : nullptr;
-}
-
 bool isAbsent(const UA_ExtensionObject& token) noexcept {
     return token.encoding == UA_EXTENSIONOBJECT_ENCODED_NOBODY;
 }
@@ -47,12 +29,13 @@ void addTokenPolicy(UA_AccessControl& control, UA_UserTokenType type, std::strin
         &control.userTokenPoliciesSize, &policy, &UA_TYPES[UA_TYPES_USERTOKENPOLICY]));
 }
 
-UA_NodeId idOf(const Session& session) noexcept {
-    return viewOf(session.id);
+void closeInStack(UA_Server* server, const NodeId& session) {
+    const UA_NodeId id = viewOf(session);
+    UA_Server_closeSession(server, &id);
 }
 
 void describe(UA_Server* server, Session& session) {
-    const UA_NodeId id = idOf(session);
+    const UA_NodeId id = viewOf(session.id);
     UA_ApplicationDescription client{};
     if (UA_Server_getSessionAttribute_scalar(
             server, &id, UA_QualifiedName{0, viewOf("clientDescription")},
@@ -93,10 +76,7 @@ struct Sessions::Callbacks {
     }
     static void close(UA_Server* server, UA_AccessControl* control, const UA_NodeId* id,
                       void* /*context*/) noexcept {
-        guarded([&]() -> UA_StatusCode {
-            owner(control).close(server, *id);
-            return UA_STATUSCODE_GOOD;
-        });
+        guarded([&] { owner(control).close(server, *id); });
     }
     static UA_Byte accessLevel(UA_Server* server, UA_AccessControl* control,
                                const UA_NodeId* session_id, void* context, const UA_NodeId* node,
@@ -169,8 +149,7 @@ void Sessions::makeRoom(UA_Server* server) {
         if (!surplus) {
             return;
         }
-        const UA_NodeId native = viewOf(*surplus);
-        UA_Server_closeSession(server, &native);
+        closeInStack(server, *surplus);
         unused_.gone(*surplus);
     }
 }
@@ -206,9 +185,9 @@ void Sessions::install(UA_ServerConfig& config) {
     control.allowHistoryUpdateUpdateData = [](auto...) -> UA_Boolean { return false; };
     control.allowHistoryUpdateDeleteRawModified = [](auto...) -> UA_Boolean { return false; };
     addTokenPolicy(control, UA_USERTOKENTYPE_ANONYMOUS, "anonymous");
-    if (options_.security || !options_.users.empty()) {
+    if (options_.security) {
         addTokenPolicy(control, UA_USERTOKENTYPE_USERNAME, "username");
-        config.allowNonePolicyPassword = !options_.security;
+        config.allowNonePolicyPassword = false;
     }
 }
 
@@ -218,42 +197,30 @@ const Session& Sessions::of(const void* context) const noexcept {
 
 Result<Admission> Sessions::admit(const Presented& presented) const {
     const auto& token = presented.token;
-    if (isAbsent(token) || decodedAs<UA_AnonymousIdentityToken>(
+    if (isAbsent(token) || decodedAs<const UA_AnonymousIdentityToken>(
                                token, UA_TYPES[UA_TYPES_ANONYMOUSIDENTITYTOKEN]) != nullptr) {
         return options_.security ? options_.security->authenticate(
                                        {"", "", presented.thumbprint, presented.certificate})
                                  : Result<Admission>(Admission{"", security::Role::engineer});
     }
     const auto* named =
-        decodedAs<UA_UserNameIdentityToken>(token, UA_TYPES[UA_TYPES_USERNAMEIDENTITYTOKEN]);
+        decodedAs<const UA_UserNameIdentityToken>(token, UA_TYPES[UA_TYPES_USERNAMEIDENTITYTOKEN]);
     if (named == nullptr) {
         return fail(Errc::not_supported, "a kind of identity this server does not know");
     }
-    Login login{textFrom(named->userName), textFrom(named->password), presented.thumbprint,
-                presented.certificate};
-    return login.user.empty() ? fail(Errc::access_denied, "a user without a name")
-                              : authenticate(login);
-}
-
-Result<Admission> Sessions::authenticate(const Login& login) const {
-    if (options_.security) {
-        return options_.security->authenticate(login);
+    const Login login{textFrom(named->userName), textFrom(named->password), presented.thumbprint,
+                      presented.certificate};
+    if (login.user.empty()) {
+        return fail(Errc::access_denied, "a user without a name");
     }
-    const auto& users = options_.users;
-    const bool known = std::any_of(users.begin(), users.end(), [&](const UserPassword& entry) {
-        return entry.user == login.user && samePassword(entry.password, login.password);
-    });
-    return known ? Result<Admission>(Admission{login.user, security::Role::engineer})
-                 : fail(Errc::access_denied, "unknown user or wrong password");
+    return options_.security ? options_.security->authenticate(login)
+                             : fail(Errc::access_denied, "unknown user or wrong password");
 }
 
 /// Closes a Session whose login was refused; it would count until its time-out.
 void Sessions::closeUnused(UA_Server* server, const NodeId& id) const {
     if (sessions_.find(id) == sessions_.end()) {
-        ServerCore::of(server).post([server, id] {
-            const UA_NodeId native = viewOf(id);
-            UA_Server_closeSession(server, &native);
-        });
+        ServerCore::of(server).post([server, id] { closeInStack(server, id); });
     }
 }
 
@@ -298,7 +265,7 @@ void Sessions::tellRefusal(UA_Server* server, const NodeId& id, const Presented&
     session.id = id;
     session.thumbprint = presented.thumbprint;
     describe(server, session);
-    const auto* named = decodedAs<UA_UserNameIdentityToken>(
+    const auto* named = decodedAs<const UA_UserNameIdentityToken>(
         presented.token, UA_TYPES[UA_TYPES_USERNAMEIDENTITYTOKEN]);
     session.user = named == nullptr ? std::string() : textFrom(named->userName);
     refused_(session, refusalOf(error), error.message);
@@ -328,8 +295,7 @@ void Sessions::closeIf(UA_Server* server, const std::function<bool(const Session
         }
     }
     for (const auto& id : ids) {
-        const UA_NodeId native = viewOf(id);
-        UA_Server_closeSession(server, &native);
+        closeInStack(server, id);
     }
 }
 

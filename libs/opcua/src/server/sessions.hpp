@@ -63,7 +63,6 @@ private:
     void tellRefusal(UA_Server* server, const NodeId& id, const Presented& presented,
                      const Error& error);
     Result<Admission> admit(const Presented& presented) const;
-    Result<Admission> authenticate(const Login& login) const;
 
     const ServerOptions& options_;
     std::unordered_map<NodeId, std::unique_ptr<Session>> sessions_;

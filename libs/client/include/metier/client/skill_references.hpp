@@ -40,7 +40,7 @@ public:
 private:
     ReferenceReader(opcua::Client& client, std::optional<std::uint16_t> metier);
 
-    opcua::Answer<SkillUse> readUse(const opcua::ReferenceDescription& used) const;
+    opcua::Answer<SkillUse> readUse(const opcua::Reference& used) const;
 
     opcua::Client* client_;
     std::optional<std::uint16_t> metier_;  // index of the Metier namespace; none: no UsesSkill

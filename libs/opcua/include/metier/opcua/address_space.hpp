@@ -27,10 +27,10 @@ NodeId childId(const NodeId& parent, const QualifiedName& browse_name);
 
 /// Attributes that every new node has. An empty DisplayName becomes the text of the BrowseName.
 struct NodeSpec {
-    NodeId id;      ///< null: a string made of the parent's id and the BrowseName, see childId()
-    NodeId parent;  ///< null: the node has no parent
+    NodeId id{};      ///< null: a string made of the parent's id and the BrowseName, see childId()
+    NodeId parent{};  ///< null: the node has no parent
     NodeId reference = ids::kHasComponent;  ///< type of the reference from the parent to the node
-    QualifiedName browse_name;
+    QualifiedName browse_name{};
     LocalizedText display_name{};
     LocalizedText description{};
 };
@@ -69,7 +69,7 @@ struct VariableSpec {
     NodeId data_type = ids::kBaseDataType;
     std::int32_t value_rank = -1;  ///< -1 scalar, 1 one-dimensional array
     std::vector<std::uint32_t> array_dimensions{};
-    Value value;  ///< empty: a zero of the data type
+    Value value{};  ///< empty: a zero of the data type
     Access access = Access::read;
     Children children = Children::mandatory;
 };
@@ -96,9 +96,9 @@ enum class MethodEffect {
 /// A new Method.
 struct MethodSpec {
     NodeSpec node;
-    std::vector<Argument> inputs;
-    std::vector<Argument> outputs;
-    MethodHandler handler;
+    std::vector<Argument> inputs{};
+    std::vector<Argument> outputs{};
+    MethodHandler handler{};
 };
 
 /// Writer of a value, and the time at which the value was true, by the writer's clock; none if not
@@ -114,7 +114,7 @@ struct DataSource {
     std::function<DataValue(const Session&)> read;  ///< present value, for a reader's session
     /// Takes a client's value or refuses it. Type and rank were checked before, except for Null,
     /// which is passed on. Empty: the value is not writable.
-    std::function<Result<>(const WriteContext&, const Value&)> write;
+    std::function<Result<>(const WriteContext&, const Value&)> write{};
 };
 
 /// Source of the values of many Variables, which a tag distinguishes. Works as DataSource, with a
@@ -134,19 +134,9 @@ struct VariableSlot {
     std::uint32_t tag = 0;  ///< chosen by the handler; distinguishes its Variables
 };
 
-/// A reference of a node and its target.
-struct Reference {
-    NodeId type;
-    NodeId target;
-    QualifiedName browse_name;
-    LocalizedText display_name{};
-    NodeClass node_class = NodeClass::unspecified;  ///< class of the target
-    NodeId type_definition;                         ///< for Objects and Variables only
-};
-
 /// Selection of references: those of `type` and its subtypes, away from the node or to it.
 struct BrowseFilter {
-    enum class Direction { forward, inverse };
+    using Direction = BrowseDirection;
     NodeId type = ids::kHierarchicalReferences;
     Direction direction = Direction::forward;
 };
@@ -214,7 +204,6 @@ public:
     /// call itself.
     Result<> setExecutable(const NodeId& method, std::function<bool(const Session&)> predicate);
     Result<> setEventNotifier(const NodeId& object, EventNotifier notifier);
-    Result<> setDescription(const NodeId& id, const LocalizedText& text);
 
 private:
     Result<> giveOwnMethods(const NodeId& object);

@@ -105,24 +105,13 @@ struct CallResult {
 
 /// Selection of a node's references.
 struct BrowseQuery {
-    enum class Direction { forward, inverse, both };
+    using Direction = BrowseDirection;
 
     NodeId node;
     NodeId reference_type = ids::kHierarchicalReferences;  ///< with its subtypes; null: all
     Direction direction = Direction::forward;
     std::vector<NodeClass> node_classes{};  ///< node classes of the targets; empty: all
     std::uint32_t references_at_once = 0;   ///< per message, 0: as many as the server sends
-};
-
-/// One reference of a node, and its target.
-struct ReferenceDescription {
-    NodeId reference_type;
-    bool is_forward = true;
-    NodeId target;
-    QualifiedName browse_name;
-    LocalizedText display_name;
-    NodeClass node_class = NodeClass::unspecified;
-    NodeId type_definition;
 };
 
 /// A path along hierarchical references.
@@ -276,7 +265,7 @@ public:
 
     /// Reads all selected references, in as many messages as needed. References to nodes of other
     /// servers are left out.
-    Answer<std::vector<ReferenceDescription>> browse(BrowseQuery query, Timeout timeout = {});
+    Answer<std::vector<Reference>> browse(BrowseQuery query, Timeout timeout = {});
 
     /// Looks up the node at the end of a path; the first one if there are several.
     /// Errors: not_found (BadNoMatch; BadNodeIdUnknown for the start).

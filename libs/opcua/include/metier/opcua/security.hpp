@@ -37,13 +37,6 @@ struct Admission {
     security::Role role = security::Role::observer;
 };
 
-/// A call that the role of a session does not allow.
-struct Denial {
-    Session session;
-    NodeId object;
-    NodeId method;
-};
-
 /// A peer whose certificate was refused. All text came from the peer and was made printable.
 struct RefusedPeer {
     std::string der;
@@ -55,12 +48,10 @@ struct RefusedPeer {
 /// security it answers only FindServers and GetEndpoints.
 struct ServerSecurity {
     Credentials credentials;
-    /// Decides about a login. Called on the server's thread, as the next two: they must not wait.
+    /// Decides about a login. Called on the server's thread, as the next one: they must not wait.
     std::function<Result<Admission>(const Login&)> authenticate;
     /// Called for each peer whose certificate was refused; may be empty.
     std::function<void(const RefusedPeer&)> on_refused{};
-    /// Called for each Method call that a role did not allow; may be empty.
-    std::function<void(const Denial&)> on_denied{};
 };
 
 }  // namespace metier::opcua

@@ -65,12 +65,6 @@ struct ServerLimits {
     std::uint32_t references_per_node = 1'000;  ///< of one Browse answer
 };
 
-/// User name and password of a server without certificates.
-struct UserPassword {
-    std::string user;
-    std::string password;
-};
-
 /// Makes a server a Local Discovery Server (OPC 10000-12).
 struct DiscoveryService {
     /// A registration that is not renewed for that long is removed, within a second or two; whole
@@ -93,8 +87,6 @@ struct ServerOptions {
     std::vector<std::string> nodesets;
     /// URIs of further namespaces, in the order of their indices.
     std::vector<std::string> namespaces;
-    /// Users besides the anonymous one; only without `security`.
-    std::vector<UserPassword> users;
     EventPublishing event_publishing = EventPublishing::at_once;
     /// Called for each audit record: actions and refused attempts of sessions, and actions of the
     /// server; may be empty. Runs on the server's thread and must not wait.

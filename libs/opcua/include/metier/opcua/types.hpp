@@ -85,4 +85,17 @@ enum class NodeClass {
     view = 128,
 };
 
+/// A reference of a node and its target.
+struct Reference {
+    NodeId type;
+    NodeId target;
+    QualifiedName browse_name;
+    LocalizedText display_name{};
+    NodeClass node_class = NodeClass::unspecified;  ///< class of the target
+    NodeId type_definition;                         ///< for Objects and Variables only
+};
+
+/// Direction in which references are followed: away from a node, or to it.
+enum class BrowseDirection { forward, inverse };
+
 }  // namespace metier::opcua
