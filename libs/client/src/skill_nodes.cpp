@@ -78,7 +78,7 @@ private:
         const auto type = data_type.as<NodeId>();
         const auto declared_rank = rank.as<std::int32_t>();
         // "Any rank" (-2) and "scalar or one dimension" (-3) are taken as scalar.
-        const auto declared = type && declared_rank ? opcua_skill::valueTypeOf(opcua_skill::VariableShape{
+        const auto declared = type && declared_rank ? opcua_skill::valueTypeOf(opcua::VariableShape{
                                                           *type, std::max(*declared_rank, kScalar)})
                                                     : skill::ValueType::null;
         return declared != skill::ValueType::null ? declared : opcua_skill::valueTypeOf(value);

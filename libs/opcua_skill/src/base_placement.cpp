@@ -6,7 +6,6 @@
 #include <memory>
 #include <utility>
 
-#include "frame_parts.hpp"
 #include "metier/opcua/text.hpp"
 #include "model_ids.hpp"
 #include "node_limits.hpp"
@@ -63,12 +62,9 @@ Result<void> write(Placement& placement, const opcua::WriteContext& writer,
 }
 
 Result<NodeId> nodeOf(const opcua::AddressSpace& nodes, const NodeId& motion_device) {
-    const auto di = nodes.namespaceIndex(kDiUri);
-    const auto robotics = nodes.namespaceIndex(kRoboticsUri);
-    if (!di || !robotics) {
-        return fail(di ? robotics.error() : di.error());
-    }
-    const std::array path{QualifiedName{*di, "ParameterSet"}, QualifiedName{*robotics, kName}};
+    METIER_ASSIGN(const auto di, nodes.namespaceIndex(kDiUri));
+    METIER_ASSIGN(const auto robotics, nodes.namespaceIndex(kRoboticsUri));
+    const std::array path{QualifiedName{di, "ParameterSet"}, QualifiedName{robotics, kName}};
     return nodes.find(motion_device, path);
 }
 
@@ -82,11 +78,9 @@ Result<void> serveBasePlacement(opcua::Server& server, const MotionDeviceSystem&
     return forEachPart(nodes, node, [&](const NodeId& variable, Part part) {
         placement->limits.add(nodes, variable,
                               {NodeKind::parameter, static_cast<std::uint8_t>(part), 0});
-        opcua::DataSource source{
-            [placement, part](const opcua::Session& /*reader*/) {
-                return opcua::DataValue{partOf(placement->pose, part), {}, {}, {}};
-            },
-            nullptr};
+        opcua::DataSource source{[placement, part](const opcua::Session& /*reader*/) {
+            return opcua::DataValue{partOf(placement->pose, part)};
+        }};
         if (part == Part::whole) {
             source.write = [placement](const opcua::WriteContext& writer,
                                        const opcua::Value& value) {

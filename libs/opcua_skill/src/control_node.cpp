@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <functional>
 #include <utility>
 
 #include "model_ids.hpp"
@@ -23,25 +24,44 @@ using Inputs = std::span<const Value>;
 constexpr std::int32_t kLockDone = 0;
 constexpr std::int32_t kLockRefused = -1;
 
+/// A Method of a controller.
+struct Call {
+    const char* name;
+    opcua::MethodHandler handler;
+    opcua::MethodEffect effect = opcua::MethodEffect::commands;
+};
+
+Result<void> setAll(AddressSpace& nodes, const NodeId& parent, std::uint16_t index,
+                    std::span<const Call> calls) {
+    for (const auto& call : calls) {
+        METIER_ASSIGN(const auto method, nodes.find(parent, {index, call.name}));
+        METIER_TRY(nodes.setMethod(method, call.handler, call.effect));
+    }
+    return {};
+}
+
 double milliseconds(std::chrono::nanoseconds time) {
     return std::chrono::duration<double, std::milli>(time).count();
 }
 
-std::vector<Value> statusOf(const Result<void>& outcome) {
-    return {Value::of(outcome ? kLockDone : kLockRefused)};
-}
-
-Result<std::uint64_t> epochIn(Inputs inputs) {
-    return inputs[0].as<std::uint64_t>();
+/// Work of a Method of the lock, which returns a status.
+template <typename Work>
+opcua::MethodHandler withStatus(std::shared_ptr<skill::Control> control, Work work) {
+    return [control, work](const CallContext& context, Inputs /*inputs*/) {
+        const auto outcome = std::invoke(work, *control, callerOf(context.session));
+        return Result<std::vector<Value>>({Value::of(outcome ? kLockDone : kLockRefused)});
+    };
 }
 
 /// Work of Heartbeat and ReleaseControl with the epoch in their argument.
 template <typename Work>
-opcua::MethodHandler withEpoch(Work work) {
-    return [work](const CallContext& context, Inputs inputs) -> Result<std::vector<Value>> {
-        METIER_ASSIGN(const auto epoch, epochIn(inputs));
-        return work(callerOf(context.session), epoch).map([] { return std::vector<Value>(); });
-    };
+opcua::MethodHandler withEpoch(std::shared_ptr<skill::Control> control, Work work) {
+    return
+        [control, work](const CallContext& context, Inputs inputs) -> Result<std::vector<Value>> {
+            METIER_ASSIGN(const auto epoch, inputs[0].as<std::uint64_t>());
+            METIER_TRY(std::invoke(work, *control, callerOf(context.session), epoch));
+            return std::vector<Value>();
+        };
 }
 
 }  // namespace
@@ -75,75 +95,41 @@ Result<void> ControlNode::bind(AddressSpace& nodes, const NodeId& controller) {
 
 Result<void> ControlNode::bindLease(AddressSpace& nodes, const NodeId& controller) {
     METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
-    struct Call {
-        const char* name;
-        opcua::MethodHandler handler;
-        opcua::MethodEffect effect = opcua::MethodEffect::commands;
-    };
     const std::array calls{
         Call{"AcquireControl", [this](const CallContext& context,
                                       Inputs inputs) { return acquire(context, inputs); }},
-        Call{"Heartbeat", withEpoch([this](const skill::Caller& caller, std::uint64_t epoch) {
-                 return control_->heartbeat(caller, epoch);
-             }),
+        Call{"Heartbeat", withEpoch(control_, &skill::Control::heartbeat),
              opcua::MethodEffect::renews},
-        Call{"ReleaseControl", withEpoch([this](const skill::Caller& caller, std::uint64_t epoch) {
-                 return control_->release(caller, epoch);
-             })},
+        Call{"ReleaseControl", withEpoch(control_, &skill::Control::release)},
     };
-    for (const auto& [name, handler, effect] : calls) {
-        const auto method = nodes.find(controller, {metier, name});
-        METIER_TRY(method ? nodes.setMethod(*method, handler, effect)
-                          : Result<void>(fail(method.error())));
-    }
+    METIER_TRY(setAll(nodes, controller, metier, calls));
     for (const auto& [name, item] : {std::pair{"ControlOwner", Item::control_owner},
                                      {"ControlEpoch", Item::control_epoch},
                                      {"LeaseRemaining", Item::lease_remaining}}) {
-        const auto variable = nodes.find(controller, {metier, name});
-        METIER_TRY(variable ? show(nodes, *variable, item) : Result<void>(fail(variable.error())));
+        METIER_ASSIGN(const auto variable, nodes.find(controller, {metier, name}));
+        METIER_TRY(show(nodes, variable, item));
     }
     return {};
 }
 
 Result<void> ControlNode::bindLock(AddressSpace& nodes, const NodeId& lock) {
     METIER_ASSIGN(const auto index, nodes.namespaceIndex(kDiUri));
-    struct Call {
-        const char* name;
-        Result<void> (*work)(skill::Control&, const skill::Caller&);
-        opcua::MethodEffect effect = opcua::MethodEffect::commands;
-    };
-    static constexpr std::array kCalls{
-        Call{"InitLock", [](skill::Control& control,
-                            const skill::Caller& caller) { return control.lock(caller); }},
-        Call{"RenewLock",
-             [](skill::Control& control, const skill::Caller& caller) {
-                 return control.renewLock(caller);
-             },
+    const std::array calls{
+        Call{"InitLock", withStatus(control_, &skill::Control::lock)},
+        Call{"RenewLock", withStatus(control_, &skill::Control::renewLock),
              opcua::MethodEffect::renews},
-        Call{"ExitLock", [](skill::Control& control,
-                            const skill::Caller& caller) { return control.unlock(caller); }},
-        Call{"BreakLock", [](skill::Control& control,
-                             const skill::Caller& /*caller*/) { return control.breakLock(); }},
+        Call{"ExitLock", withStatus(control_, &skill::Control::unlock)},
+        Call{"BreakLock",
+             withStatus(control_, [](skill::Control& control,
+                                     const skill::Caller&) { return control.breakLock(); })},
     };
-    for (const auto& call : kCalls) {
-        METIER_ASSIGN(const auto method, nodes.find(lock, {index, call.name}));
-        auto set = nodes.setMethod(
-            method,
-            [control = control_, work = call.work](const CallContext& context, Inputs /*inputs*/) {
-                return Result<std::vector<Value>>(
-                    statusOf(work(*control, callerOf(context.session))));
-            },
-            call.effect);
-        if (!set) {
-            return set;
-        }
-    }
+    METIER_TRY(setAll(nodes, lock, index, calls));
     for (const auto& [name, item] : {std::pair{"Locked", Item::locked},
                                      {"LockingClient", Item::locking_client},
                                      {"LockingUser", Item::locking_user},
                                      {"RemainingLockTime", Item::remaining_lock_time}}) {
-        const auto variable = nodes.find(lock, {index, name});
-        METIER_TRY(variable ? show(nodes, *variable, item) : Result<void>(fail(variable.error())));
+        METIER_ASSIGN(const auto variable, nodes.find(lock, {index, name}));
+        METIER_TRY(show(nodes, variable, item));
     }
     return {};
 }
@@ -155,13 +141,10 @@ Result<void> ControlNode::show(AddressSpace& nodes, const NodeId& variable, Item
 }
 
 Result<ControlNode::Values> ControlNode::acquire(const CallContext& context, Inputs inputs) {
-    const auto lease = inputs[0].as<std::uint32_t>();
-    const auto action = inputs[1].as<std::int32_t>();
-    if (!lease || !action) {
-        return fail(lease ? action.error() : lease.error());
-    }
-    METIER_ASSIGN(const auto on_loss, ownerLossActionFrom(*action));
-    return control_->acquire(callerOf(context.session), std::chrono::milliseconds(*lease), on_loss)
+    METIER_ASSIGN(const auto lease, inputs[0].as<std::uint32_t>());
+    METIER_ASSIGN(const auto action, inputs[1].as<std::int32_t>());
+    METIER_ASSIGN(const auto on_loss, ownerLossActionFrom(action));
+    return control_->acquire(callerOf(context.session), std::chrono::milliseconds(lease), on_loss)
         .map([](std::uint64_t epoch) { return Values{Value::of(epoch)}; });
 }
 
@@ -189,7 +172,7 @@ opcua::DataValue ControlNode::read(const opcua::Session& /*session*/, std::uint3
         }
         return Value();
     };
-    return {value(), {}, {}, {}};
+    return {value()};
 }
 
 Result<void> ControlNode::write(const opcua::WriteContext& /*writer*/, std::uint32_t /*tag*/,

@@ -43,10 +43,8 @@ public:
             return {};
         }
         const auto parent = indexOf(std::string(folder.name));
-        const auto declared = childOf(nodes_, type_, folder.name);
-        METIER_ASSIGN(const auto placeholder,
-                      declared ? childOf(nodes_, declared->target, folder.placeholder)
-                               : Result<Reference>(fail(declared.error())));
+        METIER_ASSIGN(const auto declared, childOf(nodes_, type_, folder.name));
+        METIER_ASSIGN(const auto placeholder, childOf(nodes_, declared.target, folder.placeholder));
         for (const auto& field : folder.fields) {
             METIER_TRY(add(folder, parent, placeholder, field));
         }

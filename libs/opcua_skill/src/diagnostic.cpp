@@ -1,5 +1,6 @@
 #include "diagnostic.hpp"
 
+#include <array>
 #include <utility>
 
 #include "metier/opcua_skill/values.hpp"
@@ -7,6 +8,17 @@
 namespace metier::opcua_skill {
 
 namespace {
+
+using opcua::Value;
+
+template <auto kMember>
+Value part(const opcua::ProgramDiagnostic& diagnostic) {
+    if constexpr (requires { Value::of(diagnostic.*kMember); }) {
+        return Value::of(diagnostic.*kMember);
+    } else {
+        return Value::ofMixed(diagnostic.*kMember);
+    }
+}
 
 opcua::NodeId sessionOf(const std::string& text) {
     auto id = opcua::NodeId::parse(text);
@@ -43,37 +55,25 @@ opcua::ProgramDiagnostic toOpcua(const skill::Diagnostic& diagnostic) {
     return result;
 }
 
-opcua::Value readDiagnostic(const skill::Diagnostic& diagnostic, DiagnosticItem item) {
-    using opcua::Value;
-    switch (item) {
-        case DiagnosticItem::whole:
-            return Value::of(toOpcua(diagnostic));
-        case DiagnosticItem::create_session_id:
-            return Value::of(sessionOf(diagnostic.create_session_id));
-        case DiagnosticItem::create_client_name:
-            return Value::of(diagnostic.create_client_name);
-        case DiagnosticItem::invocation_creation_time:
-            return Value::of(timeOrNull(diagnostic.invocation_creation_time));
-        case DiagnosticItem::last_transition_time:
-            return Value::of(timeOrNull(diagnostic.last_transition_time));
-        case DiagnosticItem::last_method_call:
-            return Value::of(diagnostic.last_method_call);
-        case DiagnosticItem::last_method_session_id:
-            return Value::of(sessionOf(diagnostic.last_method_session_id));
-        case DiagnosticItem::last_method_input_arguments:
-            return Value::of(toOpcua(diagnostic).last_method_input_arguments);
-        case DiagnosticItem::last_method_output_arguments:
-            return Value::of(std::vector<opcua::Argument>());
-        case DiagnosticItem::last_method_input_values:
-            return Value::ofMixed(toOpcua(diagnostic).last_method_input_values);
-        case DiagnosticItem::last_method_output_values:
-            return Value::ofMixed({});
-        case DiagnosticItem::last_method_call_time:
-            return Value::of(timeOrNull(diagnostic.last_method_call_time));
-        case DiagnosticItem::last_method_return_status:
-            return Value::of(statusCodeOf(diagnostic.last_method_status));
-    }
-    return {};
+std::span<const DiagnosticItem> diagnosticItems() {
+    using Diagnostic = opcua::ProgramDiagnostic;
+    static constexpr std::array kItems{
+        DiagnosticItem{"", [](const Diagnostic& diagnostic) { return Value::of(diagnostic); }},
+        DiagnosticItem{"/CreateSessionId", part<&Diagnostic::create_session_id>},
+        DiagnosticItem{"/CreateClientName", part<&Diagnostic::create_client_name>},
+        DiagnosticItem{"/InvocationCreationTime", part<&Diagnostic::invocation_creation_time>},
+        DiagnosticItem{"/LastTransitionTime", part<&Diagnostic::last_transition_time>},
+        DiagnosticItem{"/LastMethodCall", part<&Diagnostic::last_method_call>},
+        DiagnosticItem{"/LastMethodSessionId", part<&Diagnostic::last_method_session_id>},
+        DiagnosticItem{"/LastMethodInputArguments", part<&Diagnostic::last_method_input_arguments>},
+        DiagnosticItem{"/LastMethodOutputArguments",
+                       part<&Diagnostic::last_method_output_arguments>},
+        DiagnosticItem{"/LastMethodInputValues", part<&Diagnostic::last_method_input_values>},
+        DiagnosticItem{"/LastMethodOutputValues", part<&Diagnostic::last_method_output_values>},
+        DiagnosticItem{"/LastMethodCallTime", part<&Diagnostic::last_method_call_time>},
+        DiagnosticItem{"/LastMethodReturnStatus", part<&Diagnostic::last_method_return_status>},
+    };
+    return kItems;
 }
 
 }  // namespace metier::opcua_skill

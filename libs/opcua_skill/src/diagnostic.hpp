@@ -1,8 +1,10 @@
 #pragma once
 
+#include <span>
+#include <string_view>
+
 #include "metier/opcua/value.hpp"
 #include "metier/skill/program_observer.hpp"
-#include "node_role.hpp"
 
 namespace metier::opcua_skill {
 
@@ -10,7 +12,11 @@ namespace metier::opcua_skill {
 /// parameters stands in for them.
 opcua::ProgramDiagnostic toOpcua(const skill::Diagnostic& diagnostic);
 
-/// One component of the diagnostic, or all of it.
-opcua::Value readDiagnostic(const skill::Diagnostic& diagnostic, DiagnosticItem item);
+/// The diagnostic as a whole, or one of its components.
+struct DiagnosticItem {
+    std::string_view path;  ///< below ProgramDiagnostic, "/LastMethodCall"; empty: the whole
+    opcua::Value (*read)(const opcua::ProgramDiagnostic& diagnostic);
+};
+std::span<const DiagnosticItem> diagnosticItems();
 
 }  // namespace metier::opcua_skill

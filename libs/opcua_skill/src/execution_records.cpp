@@ -3,7 +3,6 @@
 #include <array>
 #include <string>
 
-#include "found_or_added.hpp"
 #include "metier/opcua/status_code.hpp"
 #include "metier/opcua/value.hpp"
 #include "metier/skill/json.hpp"
@@ -58,32 +57,31 @@ const std::array<Item, 13>& items() {
 }
 
 Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& skill, std::uint16_t metier) {
-    opcua::ObjectSpec spec;
-    spec.node.parent = skill;
-    spec.node.browse_name = {metier, kExecutionRecords};
-    spec.node.description = {"en", "The last executions, the latest first."};
-    spec.type = opcua::ids::kFolderType;
-    return foundOrAdded(nodes, spec);
+    return foundOrAdded(nodes,
+                        {.node = {.parent = skill,
+                                  .browse_name = {metier, kFolder},
+                                  .description = {"en", "The last executions, the latest first."}},
+                         .type = opcua::ids::kFolderType});
 }
 
 /// Adds the record of the execution that came `back` before the latest.
 Result<void> addRecord(AddressSpace& nodes, const NodeId& folder, const NodeId& type,
                        const skill::Program& program, std::size_t back) {
-    opcua::ObjectSpec spec;
-    spec.node.parent = folder;
-    spec.node.browse_name = {type.namespaceIndex(),
-                             back == 0 ? "Latest" : "Latest-" + std::to_string(back)};
-    spec.node.description = {"en", "What is kept of one execution."};
-    spec.type = type;
-    METIER_ASSIGN(const auto object, nodes.addObject(spec));
+    const auto name = back == 0 ? "Latest" : "Latest-" + std::to_string(back);
+    METIER_ASSIGN(
+        const auto object,
+        nodes.addObject({.node = {.parent = folder,
+                                  .browse_name = {type.namespaceIndex(), name},
+                                  .description = {"en", "What is kept of one execution."}},
+                         .type = type}));
     for (const auto& item : items()) {
         METIER_ASSIGN(const auto node, nodes.find(object, {type.namespaceIndex(), item.name}));
         const auto read = [&program, back, &item](const opcua::Session& /*reader*/) {
             const auto* record = program.recentExecution(back);
-            return record == nullptr ? opcua::DataValue{{}, opcua::status::kBadNoData, {}, {}}
-                                     : opcua::DataValue{item.read(*record, program), {}, {}, {}};
+            return record == nullptr ? opcua::DataValue{{}, opcua::status::kBadNoData}
+                                     : opcua::DataValue{item.read(*record, program)};
         };
-        METIER_TRY(nodes.setDataSource(node, {read, nullptr}));
+        METIER_TRY(nodes.setDataSource(node, {read}));
     }
     return {};
 }
@@ -93,14 +91,11 @@ Result<void> addRecord(AddressSpace& nodes, const NodeId& folder, const NodeId& 
 Result<void> publishExecutionRecords(AddressSpace& nodes, const NodeId& skill,
                                      const skill::Program& program) {
     METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
-    const auto type =
-        typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {metier, "ExecutionRecordType"});
-    const auto folder = folderOf(nodes, skill, metier);
-    if (!type || !folder) {
-        return fail(type ? folder.error() : type.error());
-    }
+    METIER_ASSIGN(const auto type, typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType,
+                                                     {metier, "ExecutionRecordType"}));
+    METIER_ASSIGN(const auto folder, folderOf(nodes, skill, metier));
     for (std::size_t back = 0; back < kBrowsableExecutions; ++back) {
-        METIER_TRY(addRecord(nodes, *folder, *type, program, back));
+        METIER_TRY(addRecord(nodes, folder, type, program, back));
     }
     return {};
 }

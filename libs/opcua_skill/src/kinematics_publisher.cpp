@@ -3,7 +3,6 @@
 #include <memory>
 #include <utility>
 
-#include "frame_parts.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/values.hpp"
 #include "model_ids.hpp"
@@ -51,9 +50,8 @@ public:
 
     Result<void> source(const NodeId& node, std::function<Value()> read) {
         return nodes_.setDataSource(node, {[read = std::move(read)](const opcua::Session&) {
-                                               return opcua::DataValue{read(), {}, {}, {}};
-                                           },
-                                           nullptr});
+                                        return opcua::DataValue{read()};
+                                    }});
     }
 
     const Result<void>& outcome() const noexcept { return outcome_; }
@@ -116,34 +114,28 @@ void wireState(KinematicsNodes& kinematics, const ReadState& state) {
 Result<void> setPayload(AddressSpace& nodes, const NodeId& device, double payload) {
     METIER_ASSIGN(const auto robotics, nodes.namespaceIndex(kOpcRoboticsUri));
     const std::array path{QualifiedName{robotics, "FlangeLoad"}, QualifiedName{robotics, "Mass"}};
-    const auto mass = nodes.find(device, path);
-    return mass ? nodes.write(*mass, Value::of(payload)) : Result<void>(fail(mass.error()));
+    METIER_ASSIGN(const auto mass, nodes.find(device, path));
+    return nodes.write(mass, Value::of(payload));
 }
 
 /// ActualPosition of the AxisType objects, as far as the motion device has them.
 Result<void> wireAxes(AddressSpace& nodes, KinematicsNodes& kinematics, const NodeId& device,
                       const ReadState& state) {
-    const auto di = nodes.namespaceIndex(kDiUri);
-    const auto robotics = nodes.namespaceIndex(kOpcRoboticsUri);
-    if (!di || !robotics) {
-        return fail(di ? robotics.error() : di.error());
-    }
-    METIER_ASSIGN(const auto axes, nodes.find(device, {*robotics, "Axes"}));
+    METIER_ASSIGN(const auto di, nodes.namespaceIndex(kDiUri));
+    METIER_ASSIGN(const auto robotics, nodes.namespaceIndex(kOpcRoboticsUri));
+    METIER_ASSIGN(const auto axes, nodes.find(device, {robotics, "Axes"}));
     METIER_ASSIGN(auto children, nodes.browse(axes, {opcua::ids::kHasComponent}));
     std::sort(children.begin(), children.end(), [](const auto& left, const auto& right) {
         return left.browse_name < right.browse_name;  // Axis_1 to Axis_8
     });
     for (std::size_t axis = 0; axis < children.size(); ++axis) {
-        const std::array path{QualifiedName{*di, "ParameterSet"},
-                              QualifiedName{*robotics, "ActualPosition"}};
+        const std::array path{QualifiedName{di, "ParameterSet"},
+                              QualifiedName{robotics, "ActualPosition"}};
         METIER_ASSIGN(const auto position, nodes.find(children[axis].target, path));
-        const auto wired = kinematics.source(position, [state, axis] {
+        METIER_TRY(kinematics.source(position, [state, axis] {
             const auto positions = state().joint_position;
             return axis < positions.size() ? Value::of(positions[axis]) : Value();
-        });
-        if (!wired) {
-            return wired;
-        }
+        }));
     }
     return {};
 }

@@ -39,7 +39,7 @@ public:
                       skill::ValueType type, std::function<Value()> read) {
         const auto node = add(specOf(name, description, type), unit);
         if (outcome_) {
-            outcome_ = nodes_.setDataSource(node, {sourceOf(std::move(read)), nullptr});
+            outcome_ = nodes_.setDataSource(node, {sourceOf(std::move(read))});
         }
         return *this;
     }
@@ -49,22 +49,18 @@ private:
     static std::function<DataValue(const opcua::Session&)> sourceOf(std::function<Value()> read) {
         return [read = std::move(read)](const opcua::Session& /*reader*/) {
             auto value = read();
-            return value.isEmpty() ? DataValue{{}, opcua::status::kBadNoCommunication, {}, {}}
-                                   : DataValue{std::move(value), {}, {}, {}};
+            return value.isEmpty() ? DataValue{{}, opcua::status::kBadNoCommunication}
+                                   : DataValue{std::move(value)};
         };
     }
     opcua::VariableSpec specOf(const char* name, const char* description, skill::ValueType type) {
-        opcua::VariableSpec spec;
-        spec.node.parent = parent_;
-        spec.node.browse_name = {index_.value_or(0), name};
-        spec.node.description = {"en", description};
         const auto shape = shapeOf(type);
-        spec.data_type = shape.data_type;
-        spec.value_rank = shape.value_rank;
-        if (shape.value_rank == 1) {
-            spec.array_dimensions = {0};
-        }
-        return spec;
+        return {.node = {.parent = parent_,
+                         .browse_name = {index_.value_or(0), name},
+                         .description = {"en", description}},
+                .data_type = shape.data_type,
+                .value_rank = shape.value_rank,
+                .array_dimensions = shape.array_dimensions};
     }
     NodeId add(opcua::VariableSpec spec, const skill::Unit* unit) {
         if (!outcome_) {
@@ -81,9 +77,8 @@ private:
         if (unit == nullptr) {
             return {};
         }
-        const auto node = nodes_.find(variable, {0, "EngineeringUnits"});
-        return node ? nodes_.write(*node, Value::of(toOpcua(*unit)))
-                    : Result<void>(fail(node.error()));
+        METIER_ASSIGN(const auto node, nodes_.find(variable, {0, "EngineeringUnits"}));
+        return nodes_.write(node, Value::of(toOpcua(*unit)));
     }
 
     opcua::AddressSpace& nodes_;
@@ -92,16 +87,31 @@ private:
     Result<void> outcome_;
 };
 
+std::vector<double> listOf(const std::array<double, 3>& vector) {
+    return {vector.begin(), vector.end()};
+}
+template <typename T>
+const T& listOf(const T& value) {
+    return value;
+}
+
 template <typename T>
 Value valueOf(const std::optional<T>& value) {
     return value ? Value::of(*value) : Value();
 }
 
+/// Reads one member of a figure that `read` returns; the empty Value if it returns none.
+template <typename Read, typename Figure, typename T>
+std::function<Value()> memberOf(Read read, T Figure::*member) {
+    return [read = std::move(read), member] {
+        const std::optional<Figure> now = read();
+        return now ? Value::of(listOf((*now).*member)) : Value();
+    };
+}
+
 void publishStream(FigureMaker& maker, const std::function<StreamFigures()>& read) {
     using skill::ValueType;
-    const auto part = [read](auto StreamFigures::*of) {
-        return [read, of] { return Value::of(read().*of); };
-    };
+    const auto part = [&read](auto of) { return memberOf(read, of); };
     maker.live(
         "StreamLag",
         "How much longer than PlayOutDelay the newest set-point of the position stream waits "
@@ -123,10 +133,6 @@ void publishStream(FigureMaker& maker, const std::function<StreamFigures()>& rea
                nullptr, ValueType::uint64, part(&StreamFigures::dropped));
 }
 
-std::vector<double> listOf(const std::array<double, 3>& vector) {
-    return {vector.begin(), vector.end()};
-}
-
 }  // namespace
 
 Result<void> publishArmFigures(opcua::AddressSpace& nodes, const NodeId& kinematics,
@@ -145,17 +151,13 @@ Result<void> publishArmFigures(opcua::AddressSpace& nodes, const NodeId& kinemat
                    ValueType::boolean, [read = figures.standstill] { return valueOf(read()); });
     }
     if (figures.stopping) {
-        const auto part = [read = figures.stopping](auto StoppingFigures::*of) {
-            return [read, of] {
-                const auto now = read();
-                return now ? Value::of((*now).*of) : Value();
-            };
-        };
         maker.live("StoppingTime",
                    "Time in which the set-points would stand if the arm were halted now [s].",
-                   &skill::kSecond, ValueType::number, part(&StoppingFigures::time));
+                   &skill::kSecond, ValueType::number,
+                   memberOf(figures.stopping, &StoppingFigures::time));
         maker.live("StoppingDistance", "How far the tool frame would go meanwhile [m].",
-                   &skill::kMetre, ValueType::number, part(&StoppingFigures::distance));
+                   &skill::kMetre, ValueType::number,
+                   memberOf(figures.stopping, &StoppingFigures::distance));
     }
     if (figures.cycle_jitter) {
         maker.live("CycleJitter",
@@ -165,16 +167,12 @@ Result<void> publishArmFigures(opcua::AddressSpace& nodes, const NodeId& kinemat
                    [read = figures.cycle_jitter] { return valueOf(read()); });
     }
     if (figures.flange_wrench) {
-        const auto part = [read = figures.flange_wrench](auto FlangeWrench::*of) {
-            return [read, of] {
-                const auto wrench = read();
-                return wrench ? Value::of(listOf((*wrench).*of)) : Value();
-            };
-        };
         maker.live("FlangeForce", "Force on the flange along x, y, z of its sensor [N].",
-                   &skill::kNewton, ValueType::numbers, part(&FlangeWrench::force));
+                   &skill::kNewton, ValueType::numbers,
+                   memberOf(figures.flange_wrench, &FlangeWrench::force));
         maker.live("FlangeTorque", "Torque on the flange about x, y, z of its sensor [N m].",
-                   &skill::kNewtonMetre, ValueType::numbers, part(&FlangeWrench::torque));
+                   &skill::kNewtonMetre, ValueType::numbers,
+                   memberOf(figures.flange_wrench, &FlangeWrench::torque));
     }
     if (figures.stream) {
         publishStream(maker, figures.stream);
@@ -186,12 +184,7 @@ Result<void> publishGripperFigures(opcua::AddressSpace& nodes, const NodeId& par
                                    const GripperKind& kind,
                                    std::function<std::optional<GripperFigures>()> figures) {
     using skill::ValueType;
-    const auto part = [read = std::move(figures)](auto GripperFigures::*of) {
-        return [read, of] {
-            const auto now = read();
-            return now ? Value::of((*now).*of) : Value();
-        };
-    };
+    const auto part = [read = std::move(figures)](auto of) { return memberOf(read, of); };
     FigureMaker maker(nodes, parent);
     maker.constant("GripperStroke", "Largest distance between the jaws [m].", skill::kMetre,
                    Value::of(kind.stroke));

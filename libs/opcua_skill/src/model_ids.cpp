@@ -35,45 +35,15 @@ const SubStateRow* rowOf(skill::SubState sub_state) {
     return row == kSubStates.end() ? nullptr : row;
 }
 
-std::string_view machineOf(skill::State state) {
-    switch (state) {
-        case skill::State::ready:
-            return "ReadySubStateMachineType";
-        case skill::State::running:
-            return "RunningSubStateMachineType";
-        default:
-            return "HaltedSubStateMachineType";
-    }
-}
-
-/// The type of that name below one of the three base types that our own derive from.
-Result<opcua::NodeId> findSubtype(const opcua::AddressSpace& nodes, const opcua::NodeId& base,
-                                  const opcua::QualifiedName& name) {
-    METIER_ASSIGN(auto subtypes, nodes.browse(base, {opcua::ids::kHasSubtype}));
-    for (const auto& subtype : subtypes) {
-        if (subtype.browse_name == name) {
-            return subtype.target;
-        }
-    }
-    return fail(Errc::not_found, "the server has no type " + name.name);
-}
-
 const opcua::NodeId kFiniteStateMachineType{0, 2771U};
 
 }  // namespace
 
 opcua::NodeId stateId(skill::State state) {
-    switch (state) {
-        case skill::State::ready:
-            return {0, 2400U};
-        case skill::State::running:
-            return {0, 2402U};
-        case skill::State::suspended:
-            return {0, 2404U};
-        case skill::State::halted:
-            break;
-    }
-    return {0, 2406U};
+    constexpr std::array kIds{2406U, 2400U, 2402U, 2404U};  // in the order of skill::State
+    const auto index =
+        static_cast<std::uint32_t>(state) - static_cast<std::uint32_t>(skill::State::halted);
+    return {0, kIds.at(index)};
 }
 
 opcua::NodeId transitionId(skill::TransitionNumber number) {
@@ -101,12 +71,13 @@ Result<ModelIds> ModelIds::of(const opcua::AddressSpace& nodes) {
     ids.device = *device;
     ids.metier = *metier;
     ids.skill_type = opcua::NodeId(*device, kSkillTypeId);
-    METIER_ASSIGN(auto event_type, findSubtype(nodes, opcua::ids::kProgramTransitionEventType,
-                                               {*device, "SkillTransitionEventType"}));
-    ids.transition_event_type = event_type;
+    METIER_ASSIGN(ids.transition_event_type,
+                  typeDirectlyBelow(nodes, opcua::ids::kProgramTransitionEventType,
+                                    {*device, "SkillTransitionEventType"}));
     for (const auto& row : kSubStates) {
-        METIER_ASSIGN(auto machine, findSubtype(nodes, kFiniteStateMachineType,
-                                                {*metier, std::string(machineOf(row.state))}));
+        const auto machine_type = std::string(skill::toString(row.state)) + "SubStateMachineType";
+        METIER_ASSIGN(auto machine,
+                      typeDirectlyBelow(nodes, kFiniteStateMachineType, {*metier, machine_type}));
         METIER_ASSIGN(auto state,
                       nodes.find(machine, {*metier, std::string(skill::toString(row.sub_state))}));
         ids.sub_states.emplace(row.sub_state, state);

@@ -40,6 +40,16 @@ struct ModelIds {
 Result<opcua::NodeId> typeDirectlyBelow(const opcua::AddressSpace& nodes, const opcua::NodeId& base,
                                         const opcua::QualifiedName& name);
 
+/// The child of `spec.node.parent` that has that BrowseName; made if there is none. Server's
+/// thread. Errors: those of AddressSpace::addObject().
+inline Result<opcua::NodeId> foundOrAdded(opcua::AddressSpace& nodes,
+                                          const opcua::ObjectSpec& spec) {
+    if (auto found = nodes.find(spec.node.parent, spec.node.browse_name)) {
+        return found;
+    }
+    return nodes.addObject(spec);
+}
+
 /// The number that the model gives to a sub-state; 0 for none.
 std::uint32_t numberOf(skill::SubState sub_state);
 /// The state that a sub-state belongs to; nothing but `none` belongs to Suspended.

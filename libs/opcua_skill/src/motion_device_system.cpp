@@ -46,8 +46,7 @@ struct Namespaces {
             {kMetierUri, &result.metier},
         }};
         for (const auto& [uri, index] : wanted) {
-            METIER_ASSIGN(auto found, nodes.namespaceIndex(uri));
-            *index = found;
+            METIER_ASSIGN(*index, nodes.namespaceIndex(uri));
         }
         return result;
     }
@@ -81,10 +80,9 @@ public:
     }
     template <typename Work>
     void check(Work work) {
-        if (!outcome_) {
-            return;
+        if (outcome_) {
+            outcome_ = work();
         }
-        outcome_ = work();
     }
     const Result<void>& outcome() const noexcept { return outcome_; }
     AddressSpace& nodes() noexcept { return nodes_; }
@@ -106,12 +104,10 @@ private:
 
 opcua::ObjectSpec objectSpec(const NodeId& parent, QualifiedName name, NodeId type,
                              std::string description) {
-    opcua::ObjectSpec spec;
-    spec.node.parent = parent;
-    spec.node.browse_name = std::move(name);
-    spec.node.description = {"en", std::move(description)};
-    spec.type = std::move(type);
-    return spec;
+    return {.node = {.parent = parent,
+                     .browse_name = std::move(name),
+                     .description = {"en", std::move(description)}},
+            .type = std::move(type)};
 }
 
 /// Makes the objects of one robot.
@@ -200,8 +196,7 @@ private:
         made.controller = steps_.object(std::move(controller));
         tellMaker(made.controller);
         steps_.check([&]() -> Result<void> {
-            METIER_ASSIGN(auto skills, makeSkillController(nodes(), made.controller));
-            made.skills = std::move(skills);
+            METIER_ASSIGN(made.skills, makeSkillController(nodes(), made.controller));
             return {};
         });
     }
@@ -227,24 +222,15 @@ Result<MotionDeviceSystem> findMotionDeviceSystem(const AddressSpace& nodes) {
     METIER_ASSIGN(const auto system,
                   firstOfType(nodes, NodeId(index.di, kDeviceSet),
                               NodeId(index.opc_robotics, kMotionDeviceSystemType)));
-    const auto devices = nodes.find(system, {index.opc_robotics, "MotionDevices"});
-    const auto controllers = nodes.find(system, {index.opc_robotics, "Controllers"});
-    if (!devices || !controllers) {
-        return fail(devices ? controllers.error() : devices.error());
-    }
-    const auto device =
-        firstOfType(nodes, *devices, NodeId(index.robotics, kSkillMotionDeviceType));
-    const auto controller =
-        firstOfType(nodes, *controllers, NodeId(index.opc_robotics, kControllerType));
-    if (!device || !controller) {
-        return fail(device ? controller.error() : device.error());
-    }
-    const auto skills = nodes.find(*controller, {index.device, "Skills"});
-    const auto kinematics = nodes.find(*device, {index.metier, "Kinematics"});
-    if (!skills || !kinematics) {
-        return fail(skills ? kinematics.error() : skills.error());
-    }
-    return MotionDeviceSystem{system, *device, *controller, *skills, *kinematics};
+    METIER_ASSIGN(const auto devices, nodes.find(system, {index.opc_robotics, "MotionDevices"}));
+    METIER_ASSIGN(const auto controllers, nodes.find(system, {index.opc_robotics, "Controllers"}));
+    METIER_ASSIGN(const auto device,
+                  firstOfType(nodes, devices, NodeId(index.robotics, kSkillMotionDeviceType)));
+    METIER_ASSIGN(const auto controller,
+                  firstOfType(nodes, controllers, NodeId(index.opc_robotics, kControllerType)));
+    METIER_ASSIGN(const auto skills, nodes.find(controller, {index.device, "Skills"}));
+    METIER_ASSIGN(const auto kinematics, nodes.find(device, {index.metier, "Kinematics"}));
+    return MotionDeviceSystem{system, device, controller, skills, kinematics};
 }
 
 Result<MotionDeviceSystem> publishMotionDeviceSystem(AddressSpace& nodes,

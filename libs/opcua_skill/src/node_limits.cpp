@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <optional>
-#include <string>
+#include <array>
+#include <string_view>
 
 #include "value_part.hpp"
 
@@ -11,24 +11,8 @@ namespace metier::opcua_skill {
 
 namespace {
 
-const char* nameOf(Part part) {
-    switch (part) {
-        case Part::x:
-            return ".x";
-        case Part::y:
-            return ".y";
-        case Part::z:
-            return ".z";
-        case Part::a:
-            return ".a";
-        case Part::b:
-            return ".b";
-        case Part::c:
-            return ".c";
-        default:
-            return "";
-    }
-}
+/// Names of the parts for messages, in the order of Part.
+constexpr std::array<std::string_view, 9> kNames{"", "", "", ".x", ".y", ".z", ".a", ".b", ".c"};
 
 /// Every number of that part.
 std::vector<double> numbersOf(const skill::Value& value, Part part) {
@@ -46,20 +30,14 @@ std::vector<double> numbersOf(const skill::Value& value, Part part) {
     return number ? std::vector{*number} : std::vector<double>();
 }
 
-bool isAngle(Part part) {
-    return part == Part::a || part == Part::b || part == Part::c;
-}
-
 }  // namespace
 
 void NodeLimits::add(const opcua::AddressSpace& nodes, const opcua::NodeId& node,
                      NodeRole node_role) {
-    const auto limit = nodes.find(node, opcua::QualifiedName{0, "EURange"});
-    if (!limit) {
-        return;
-    }
-    const auto value = nodes.read(*limit);
-    const auto range = value ? value->value.as<Range>() : Result<Range>(fail(value.error()));
+    const auto range =
+        nodes.find(node, opcua::QualifiedName{0, "EURange"})
+            .and_then([&](const auto& limit) { return nodes.read(limit); })
+            .and_then([](const auto& read) { return read.value.template as<Range>(); });
     if (range && range->low < range->high) {
         limits_.push_back({node_role.field, static_cast<Part>(node_role.detail), *range});
     }
@@ -75,10 +53,11 @@ Result<void> NodeLimits::check(std::uint16_t index, const skill::Field& field,
             if (!(number < limit.range.low || number > limit.range.high)) {
                 continue;  // or is none, which the field's own check refuses
             }
-            const auto& unit = isAngle(limit.part) ? skill::kRadian : field.unit;
+            const auto& unit = limit.part >= Part::a ? skill::kRadian : field.unit;
             return fail(Errc::out_of_range,
                         fmt::format("{}{}: {} is outside {} to {}{}{}", field.name,
-                                    nameOf(limit.part), number, limit.range.low, limit.range.high,
+                                    kNames.at(static_cast<std::size_t>(limit.part)), number,
+                                    limit.range.low, limit.range.high,
                                     unit.symbol.empty() ? "" : " ", unit.symbol));
         }
     }

@@ -8,21 +8,24 @@
 #include <iterator>
 #include <utility>
 
+#include "diagnostic.hpp"
+#include "value_part.hpp"
+
 namespace metier::opcua_skill {
 
 namespace {
 
-constexpr std::uint8_t detailOf(skill::Method method) {
-    return static_cast<std::uint8_t>(method);
-}
-constexpr std::uint8_t detailOf(skill::State state) {
-    return static_cast<std::uint8_t>(state);
-}
-constexpr std::uint8_t detailOf(Part part) {
-    return static_cast<std::uint8_t>(part);
-}
-constexpr std::uint8_t detailOf(DiagnosticItem item) {
+template <typename Enum>
+constexpr std::uint8_t detailOf(Enum item) {
     return static_cast<std::uint8_t>(item);
+}
+
+/// The row of a table that has that path, or null.
+template <typename Table>
+auto* rowOf(const Table& table, std::string_view path) {
+    const auto found = std::find_if(std::begin(table), std::end(table),
+                                    [&](const auto& row) { return row.path == path; });
+    return found == std::end(table) ? nullptr : &*found;
 }
 
 struct FixedPath {
@@ -52,85 +55,62 @@ constexpr std::array kFixedPaths{
     FixedPath{"Steps", NodeKind::steps},
     FixedPath{"CurrentStep", NodeKind::current_step},
     FixedPath{"Progress", NodeKind::progress},
-    FixedPath{"ReadySubStates/CurrentState", NodeKind::sub_state, detailOf(skill::State::ready)},
-    FixedPath{"ReadySubStates/CurrentState/Id", NodeKind::sub_state_id,
-              detailOf(skill::State::ready)},
-    FixedPath{"ReadySubStates/CurrentState/Number", NodeKind::sub_state_number,
-              detailOf(skill::State::ready)},
-    FixedPath{"RunningSubStates/CurrentState", NodeKind::sub_state,
-              detailOf(skill::State::running)},
-    FixedPath{"RunningSubStates/CurrentState/Id", NodeKind::sub_state_id,
-              detailOf(skill::State::running)},
-    FixedPath{"RunningSubStates/CurrentState/Number", NodeKind::sub_state_number,
-              detailOf(skill::State::running)},
-    FixedPath{"HaltedSubStates/CurrentState", NodeKind::sub_state, detailOf(skill::State::halted)},
-    FixedPath{"HaltedSubStates/CurrentState/Id", NodeKind::sub_state_id,
-              detailOf(skill::State::halted)},
-    FixedPath{"HaltedSubStates/CurrentState/Number", NodeKind::sub_state_number,
-              detailOf(skill::State::halted)},
-    FixedPath{"ProgramDiagnostic", NodeKind::diagnostic, detailOf(DiagnosticItem::whole)},
-    FixedPath{"ProgramDiagnostic/CreateSessionId", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::create_session_id)},
-    FixedPath{"ProgramDiagnostic/CreateClientName", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::create_client_name)},
-    FixedPath{"ProgramDiagnostic/InvocationCreationTime", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::invocation_creation_time)},
-    FixedPath{"ProgramDiagnostic/LastTransitionTime", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::last_transition_time)},
-    FixedPath{"ProgramDiagnostic/LastMethodCall", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::last_method_call)},
-    FixedPath{"ProgramDiagnostic/LastMethodSessionId", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::last_method_session_id)},
-    FixedPath{"ProgramDiagnostic/LastMethodInputArguments", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::last_method_input_arguments)},
-    FixedPath{"ProgramDiagnostic/LastMethodOutputArguments", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::last_method_output_arguments)},
-    FixedPath{"ProgramDiagnostic/LastMethodInputValues", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::last_method_input_values)},
-    FixedPath{"ProgramDiagnostic/LastMethodOutputValues", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::last_method_output_values)},
-    FixedPath{"ProgramDiagnostic/LastMethodCallTime", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::last_method_call_time)},
-    FixedPath{"ProgramDiagnostic/LastMethodReturnStatus", NodeKind::diagnostic,
-              detailOf(DiagnosticItem::last_method_return_status)},
 };
 
-struct PartPath {
-    std::string_view path;
-    Part part;
+/// The machines of sub-states, and their Variables.
+constexpr std::array kSubStateMachines{
+    std::pair{std::string_view("ReadySubStates/"), skill::State::ready},
+    std::pair{std::string_view("RunningSubStates/"), skill::State::running},
+    std::pair{std::string_view("HaltedSubStates/"), skill::State::halted},
+};
+constexpr std::array kSubStatePaths{
+    FixedPath{"CurrentState", NodeKind::sub_state},
+    FixedPath{"CurrentState/Id", NodeKind::sub_state_id},
+    FixedPath{"CurrentState/Number", NodeKind::sub_state_number},
 };
 
-constexpr std::array kPartPaths{
-    PartPath{"", Part::whole},
-    PartPath{"CartesianCoordinates", Part::position},
-    PartPath{"CartesianCoordinates/X", Part::x},
-    PartPath{"CartesianCoordinates/Y", Part::y},
-    PartPath{"CartesianCoordinates/Z", Part::z},
-    PartPath{"Orientation", Part::orientation},
-    PartPath{"Orientation/A", Part::a},
-    PartPath{"Orientation/B", Part::b},
-    PartPath{"Orientation/C", Part::c},
-    PartPath{"X", Part::x},
-    PartPath{"Y", Part::y},
-    PartPath{"Z", Part::z},
+/// The parts of a Vector3.
+constexpr std::array kVectorParts{
+    FramePart{"X", Part::x},
+    FramePart{"Y", Part::y},
+    FramePart{"Z", Part::z},
 };
+
+std::optional<NodeRole> subStateRole(std::string_view path) {
+    for (const auto& [machine, state] : kSubStateMachines) {
+        const auto* row = path.starts_with(machine)
+                              ? rowOf(kSubStatePaths, path.substr(machine.size()))
+                              : nullptr;
+        if (row != nullptr) {
+            return NodeRole{row->kind, detailOf(state), 0};
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<NodeRole> diagnosticRole(std::string_view path) {
+    constexpr std::string_view kDiagnostic = "ProgramDiagnostic";
+    const auto items = diagnosticItems();
+    const auto* item =
+        path.starts_with(kDiagnostic) ? rowOf(items, path.substr(kDiagnostic.size())) : nullptr;
+    return item == nullptr
+               ? std::nullopt
+               : std::optional(NodeRole{NodeKind::diagnostic,
+                                        static_cast<std::uint8_t>(item - items.data()), 0});
+}
 
 std::optional<NodeRole> fixedRole(std::string_view path) {
-    const auto* found = std::find_if(kFixedPaths.begin(), kFixedPaths.end(),
-                                     [&](const FixedPath& fixed) { return fixed.path == path; });
-    if (found == kFixedPaths.end()) {
-        return std::nullopt;
+    if (const auto* row = rowOf(kFixedPaths, path)) {
+        return NodeRole{row->kind, row->detail, 0};
     }
-    return NodeRole{found->kind, found->detail, 0};
+    const auto sub_state = subStateRole(path);
+    return sub_state ? sub_state : diagnosticRole(path);
 }
 
 std::optional<NodeRole> partRole(NodeKind kind, std::string_view below) {
-    const auto* found = std::find_if(kPartPaths.begin(), kPartPaths.end(),
-                                     [&](const PartPath& part) { return part.path == below; });
-    if (found == kPartPaths.end()) {
-        return std::nullopt;
-    }
-    return NodeRole{kind, detailOf(found->part), 0};
+    const auto* of_frame = rowOf(kFrameParts, below);
+    const auto* row = of_frame == nullptr ? rowOf(kVectorParts, below) : of_frame;
+    return row == nullptr ? std::nullopt : std::optional(NodeRole{kind, detailOf(row->part), 0});
 }
 
 /// Folder of the fields of one place, and the role of their nodes.
@@ -233,17 +213,11 @@ private:
     std::vector<bool> result_met_;
 };
 
-const LayoutNode* findNode(const SkillLayout& layout, std::string_view path) {
-    const auto found = std::find_if(layout.begin(), layout.end(),
-                                    [&](const LayoutNode& node) { return node.path == path; });
-    return found == layout.end() ? nullptr : &*found;
-}
-
 /// Whether an instance may lack the node: it is declared as Optional, or is below such a node that
 /// the instance lacks, too.
 bool isOptional(const SkillLayout& declared, const SkillLayout& instance, std::string_view path) {
-    for (const auto* node = findNode(declared, path);
-         node != nullptr && findNode(instance, node->path) == nullptr;
+    for (const auto* node = rowOf(declared, path);
+         node != nullptr && rowOf(instance, node->path) == nullptr;
          node = node->parent == LayoutNode::kSkill ? nullptr : &declared[node->parent]) {
         if (node->rule == LayoutNode::Rule::optional) {
             return true;

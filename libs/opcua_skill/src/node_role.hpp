@@ -32,7 +32,7 @@ enum class NodeKind : std::uint8_t {
     result,  ///< detail: Part
     result_unit,
     result_range,
-    diagnostic,  ///< detail: DiagnosticItem
+    diagnostic,  ///< detail: index in diagnosticItems()
     reason_text,
     execution_id,
     steps,  ///< step names of a sequence
@@ -43,21 +43,11 @@ enum class NodeKind : std::uint8_t {
 /// Which part of a value a Variable holds.
 enum class Part : std::uint8_t { whole, position, orientation, x, y, z, a, b, c };
 
-enum class DiagnosticItem : std::uint8_t {
-    whole,
-    create_session_id,
-    create_client_name,
-    invocation_creation_time,
-    last_transition_time,
-    last_method_call,
-    last_method_session_id,
-    last_method_input_arguments,
-    last_method_output_arguments,
-    last_method_input_values,
-    last_method_output_values,
-    last_method_call_time,
-    last_method_return_status,
-};
+/// Whether the node belongs to a result: its value, unit or range.
+constexpr bool isOfResult(NodeKind kind) noexcept {
+    return kind == NodeKind::result || kind == NodeKind::result_unit ||
+           kind == NodeKind::result_range;
+}
 
 struct NodeRole {
     NodeKind kind = NodeKind::method;

@@ -18,10 +18,7 @@ constexpr std::uint32_t kLockingServicesType = 6388;
 constexpr std::uint16_t kOwnNamespace = 1;
 
 opcua::NodeSpec specOf(const NodeId& parent, const Reference& declaration) {
-    opcua::NodeSpec spec;
-    spec.parent = parent;
-    spec.browse_name = declaration.browse_name;
-    return spec;
+    return {.parent = parent, .browse_name = declaration.browse_name};
 }
 
 /// Arguments, units and ranges are the declaration's own.
@@ -36,13 +33,11 @@ Result<void> shareProperties(AddressSpace& nodes, const NodeId& node, const Node
 Result<NodeId> addVariable(AddressSpace& nodes, const NodeId& parent,
                            const Reference& declaration) {
     METIER_ASSIGN(const auto shape, nodes.shapeOf(declaration.target));
-    opcua::VariableSpec spec;
-    spec.node = specOf(parent, declaration);
-    spec.type = declaration.type_definition;
-    spec.data_type = shape.data_type;
-    spec.value_rank = shape.value_rank;
-    spec.children = opcua::Children::none;
-    return nodes.addVariable(spec);
+    return nodes.addVariable({.node = specOf(parent, declaration),
+                              .type = declaration.type_definition,
+                              .data_type = shape.data_type,
+                              .value_rank = shape.value_rank,
+                              .children = opcua::Children::none});
 }
 
 /// Adds the nodes that the lease's interface declares to the controller itself.
@@ -51,7 +46,7 @@ Result<void> addLease(AddressSpace& nodes, const NodeId& controller, const NodeI
     for (const auto& declaration : declared) {
         METIER_ASSIGN(const auto added,
                       declaration.node_class == opcua::NodeClass::method
-                          ? nodes.addMethod({specOf(controller, declaration), {}, {}, {}})
+                          ? nodes.addMethod({.node = specOf(controller, declaration)})
                           : addVariable(nodes, controller, declaration));
         METIER_TRY(shareProperties(nodes, added, declaration.target));
     }
@@ -60,59 +55,49 @@ Result<void> addLease(AddressSpace& nodes, const NodeId& controller, const NodeI
 
 Result<void> addLock(AddressSpace& nodes, const NodeId& controller) {
     METIER_ASSIGN(const auto di, nodes.namespaceIndex(kDiUri));
-    opcua::ObjectSpec lock;
-    lock.node.parent = controller;
-    lock.node.browse_name = {di, "Lock"};
-    lock.node.description = {"en", "Used to lock the controller."};
-    lock.type = NodeId(di, kLockingServicesType);
+    const opcua::ObjectSpec lock{.node = {.parent = controller,
+                                          .browse_name = {di, "Lock"},
+                                          .description = {"en", "Used to lock the controller."}},
+                                 .type = NodeId(di, kLockingServicesType)};
     return nodes.addObject(lock, opcua::MethodNodes::own).map([](const NodeId& /*lock*/) {});
 }
 
 }  // namespace
 
 Result<NodeId> makeSkillController(AddressSpace& nodes, const NodeId& controller) {
-    const auto device = nodes.namespaceIndex(kDeviceUri);
-    const auto metier = nodes.namespaceIndex(kMetierUri);
-    if (!device || !metier) {
-        return fail(device ? metier.error() : device.error());
-    }
-    const NodeId lease(*metier, kIControlLeaseType);
-    for (const auto& interface : {NodeId(*device, kISkillControllerType), lease}) {
+    METIER_ASSIGN(const auto device, nodes.namespaceIndex(kDeviceUri));
+    METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
+    const NodeId lease(metier, kIControlLeaseType);
+    for (const auto& interface : {NodeId(device, kISkillControllerType), lease}) {
         METIER_TRY(nodes.addReference(controller, opcua::ids::kHasInterface, interface));
     }
     METIER_TRY(addLease(nodes, controller, lease));
     METIER_TRY(addLock(nodes, controller));
-    opcua::ObjectSpec skills;
-    skills.node.parent = controller;
-    skills.node.browse_name = {*device, "Skills"};
-    skills.node.description = {"en", "The skills of the controller."};
-    return nodes.addObject(skills);
+    return nodes.addObject({.node = {.parent = controller,
+                                     .browse_name = {device, "Skills"},
+                                     .description = {"en", "The skills of the controller."}}});
 }
 
 Result<SkillController> publishSkillController(AddressSpace& nodes, const std::string& name,
                                                const std::string& description) {
     METIER_ASSIGN(const auto di, nodes.namespaceIndex(kDiUri));
-    opcua::ObjectSpec spec;
-    spec.node.id = NodeId(kOwnNamespace, name);
-    spec.node.parent = NodeId(di, kDeviceSet);
-    spec.node.browse_name = {kOwnNamespace, name};
-    spec.node.description = {"en", description};
-    spec.event_notifier = opcua::EventNotifier::subscribable;
-    METIER_ASSIGN(auto controller, nodes.addObject(spec));
+    METIER_ASSIGN(auto controller,
+                  nodes.addObject({.node = {.id = NodeId(kOwnNamespace, name),
+                                            .parent = NodeId(di, kDeviceSet),
+                                            .browse_name = {kOwnNamespace, name},
+                                            .description = {"en", description}},
+                                   .event_notifier = opcua::EventNotifier::subscribable}));
     METIER_TRY(nodes.addReference(opcua::ids::kServer, opcua::ids::kHasNotifier, controller));
     METIER_ASSIGN(auto skills, makeSkillController(nodes, controller));
     return SkillController{std::move(controller), std::move(skills)};
 }
 
 Result<SkillController> findSkillController(const opcua::AddressSpace& nodes) {
-    const auto di = nodes.namespaceIndex(kDiUri);
-    const auto device = nodes.namespaceIndex(kDeviceUri);
-    if (!di || !device) {
-        return fail(di ? device.error() : di.error());
-    }
-    METIER_ASSIGN(const auto objects, nodes.browse(opcua::NodeId(*di, kDeviceSet)));
+    METIER_ASSIGN(const auto di, nodes.namespaceIndex(kDiUri));
+    METIER_ASSIGN(const auto device, nodes.namespaceIndex(kDeviceUri));
+    METIER_ASSIGN(const auto objects, nodes.browse(NodeId(di, kDeviceSet)));
     for (const auto& object : objects) {
-        if (auto skills = nodes.find(object.target, {*device, "Skills"})) {
+        if (auto skills = nodes.find(object.target, {device, "Skills"})) {
             return SkillController{object.target, std::move(*skills)};
         }
     }

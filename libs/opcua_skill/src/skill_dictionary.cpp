@@ -67,46 +67,37 @@ Result<void> collectTypes(const AddressSpace& nodes, const NodeId& base,
 }
 
 Result<NodeId> addFolder(AddressSpace& nodes, std::uint16_t metier) {
-    opcua::ObjectSpec folder;
-    folder.node.id = NodeId(metier, std::string("urn:metier:dictionary"));
-    folder.node.parent = kDictionaries;
-    folder.node.browse_name = {metier, "metier"};
-    folder.node.description = {"en", "What skill types are for."};
-    folder.type = kDictionaryFolderType;
-    return nodes.addObject(folder);
+    return nodes.addObject({.node = {.id = NodeId(metier, std::string("urn:metier:dictionary")),
+                                     .parent = kDictionaries,
+                                     .browse_name = {metier, "metier"},
+                                     .description = {"en", "What skill types are for."}},
+                            .type = kDictionaryFolderType});
 }
 
 Result<NodeId> addEntry(AddressSpace& nodes, const NodeId& folder, const Term& term) {
     const auto uri = std::string(kUriHead) + std::string(term.name);
-    opcua::ObjectSpec entry;
-    entry.node.id = NodeId(folder.namespaceIndex(), uri);
-    entry.node.parent = folder;
-    entry.node.browse_name = {folder.namespaceIndex(), uri};
-    entry.node.display_name = {"en", std::string(term.name)};
-    entry.node.description = {"en", std::string(term.text)};
-    entry.type = kUriDictionaryEntryType;
-    return nodes.addObject(entry);
+    return nodes.addObject({.node = {.id = NodeId(folder.namespaceIndex(), uri),
+                                     .parent = folder,
+                                     .browse_name = {folder.namespaceIndex(), uri},
+                                     .display_name = {"en", std::string(term.name)},
+                                     .description = {"en", std::string(term.text)}},
+                            .type = kUriDictionaryEntryType});
 }
 
 }  // namespace
 
 Result<void> publishDictionary(AddressSpace& nodes) {
-    const auto metier = nodes.namespaceIndex(kMetierUri);
-    const auto device = nodes.namespaceIndex(kDeviceUri);
-    if (!metier || !device) {
-        return fail(metier ? device.error() : metier.error());
-    }
+    METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
+    METIER_ASSIGN(const auto device, nodes.namespaceIndex(kDeviceUri));
     std::map<std::string, NodeId, std::less<>> types;
-    METIER_TRY(collectTypes(nodes, NodeId(*device, kSkillTypeId), types));
-    METIER_ASSIGN(const auto folder, addFolder(nodes, *metier));
+    METIER_TRY(collectTypes(nodes, NodeId(device, kSkillTypeId), types));
+    METIER_ASSIGN(const auto folder, addFolder(nodes, metier));
     for (const auto& term : terms()) {
         METIER_ASSIGN(const auto entry, addEntry(nodes, folder, term));
         for (const auto name : term.types) {
-            const auto type = types.find(name);
-            if (type == types.end()) {
-                continue;
+            if (const auto type = types.find(name); type != types.end()) {
+                METIER_TRY(nodes.addReference(type->second, kHasDictionaryEntry, entry));
             }
-            METIER_TRY(nodes.addReference(type->second, kHasDictionaryEntry, entry));
         }
     }
     return {};

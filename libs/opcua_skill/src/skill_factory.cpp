@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "metier/opcua_skill/values.hpp"
-#include "wiring.hpp"
 
 namespace metier::opcua_skill {
 
@@ -57,10 +56,8 @@ bool isRange(NodeKind kind) {
 }
 
 const skill::Field& fieldOf(const skill::SkillDescription& description, NodeRole node_role) {
-    const bool is_result = node_role.kind == NodeKind::result ||
-                           node_role.kind == NodeKind::result_unit ||
-                           node_role.kind == NodeKind::result_range;
-    return (is_result ? description.results : description.parameters)[node_role.field];
+    return (isOfResult(node_role.kind) ? description.results
+                                       : description.parameters)[node_role.field];
 }
 
 /// Which nodes of a layout an instance has: the mandatory ones, those with a role, and what
@@ -218,27 +215,18 @@ Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription&
 
 /// A placeholder says little: the field itself says what its node is like.
 void SkillFactory::takeFrom(const skill::Field& field, Step& step) {
-    const auto shape = shapeOf(field.type);
-    step.shape = {shape.data_type, shape.value_rank, {}};
-    if (shape.value_rank > 0) {
-        step.shape.array_dimensions = {0};
-    }
+    step.shape = shapeOf(field.type);
     step.description = {"en", field.description};
 }
 
 Result<void> SkillFactory::describe(Step& step) const {
-    METIER_ASSIGN(auto description, nodes_.descriptionOf(step.declaration.target));
-    step.description = std::move(description);
+    METIER_ASSIGN(step.description, nodes_.descriptionOf(step.declaration.target));
     if (step.declaration.node_class != NodeClass::variable) {
         return {};
     }
-    auto shape = nodes_.shapeOf(step.declaration.target);
-    auto value = nodes_.read(step.declaration.target);
-    if (!shape || !value) {
-        return fail(shape ? value.error() : shape.error());
-    }
-    step.shape = std::move(*shape);
-    step.value = std::move(value->value);
+    METIER_ASSIGN(step.shape, nodes_.shapeOf(step.declaration.target));
+    METIER_ASSIGN(auto read, nodes_.read(step.declaration.target));
+    step.value = std::move(read.value);
     return {};
 }
 
@@ -257,7 +245,7 @@ bool SkillFactory::serves(const Step& step, const skill::SkillDescription& descr
     if (isRange(step.node_role->kind)) {
         const auto declared = step.value.as<opcua::Range>();
         const auto& wanted = *fieldOf(description, *step.node_role).range;
-        return declared && declared->low == wanted.low && declared->high == wanted.high;
+        return declared && *declared == wanted;
     }
     return false;
 }
@@ -278,15 +266,13 @@ Result<NodeId> SkillFactory::findType(const NodeId& base, std::string_view name)
 Result<void> SkillFactory::addObject(const NodeId& skills, const NodeId& id,
                                      const skill::SkillDescription& description,
                                      const NodeId& type) {
-    opcua::ObjectSpec spec;
-    spec.node.id = id;
-    spec.node.parent = skills;
-    spec.node.browse_name = {id.namespaceIndex(), description.name};
-    spec.node.description = {"en", description.description};
-    spec.type = type;
-    spec.event_notifier = opcua::EventNotifier::subscribable;
-    spec.children = opcua::Children::none;
-    METIER_TRY(nodes_.addObject(spec));
+    METIER_TRY(nodes_.addObject({.node = {.id = id,
+                                          .parent = skills,
+                                          .browse_name = {id.namespaceIndex(), description.name},
+                                          .description = {"en", description.description}},
+                                 .type = type,
+                                 .event_notifier = opcua::EventNotifier::subscribable,
+                                 .children = opcua::Children::none}));
     auto owners =
         nodes_.browse(skills, {opcua::ids::kHasComponent, opcua::BrowseFilter::Direction::inverse});
     if (!owners || owners->empty()) {
@@ -315,31 +301,23 @@ Result<NodeId> SkillFactory::addNode(const Step& step, const NodeId& parent,
     }
     switch (step.declaration.node_class) {
         case NodeClass::method:
-            return nodes_.addMethod({std::move(node), {}, {}, {}});
-        case NodeClass::object: {
-            opcua::ObjectSpec spec;
-            spec.node = std::move(node);
-            spec.type = step.declaration.type_definition;
-            spec.children = opcua::Children::none;
-            return nodes_.addObject(spec);
-        }
+            return nodes_.addMethod({.node = std::move(node)});
+        case NodeClass::object:
+            return nodes_.addObject({.node = std::move(node),
+                                     .type = step.declaration.type_definition,
+                                     .children = opcua::Children::none});
         default:
             break;
     }
-    opcua::VariableSpec spec;
-    spec.node = std::move(node);
-    spec.type = step.declaration.type_definition;
-    spec.data_type = step.shape.data_type;
-    spec.value_rank = step.shape.value_rank;
-    spec.array_dimensions = step.shape.array_dimensions;
-    spec.access = step.node_role && step.node_role->kind == NodeKind::parameter
-                      ? opcua::Access::read_write
-                      : opcua::Access::read;
-    spec.children = opcua::Children::none;
-    if (!step.node_role) {
-        spec.value = step.value;
-    }
-    return nodes_.addVariable(spec);
+    const bool writable = step.node_role && step.node_role->kind == NodeKind::parameter;
+    return nodes_.addVariable({.node = std::move(node),
+                               .type = step.declaration.type_definition,
+                               .data_type = step.shape.data_type,
+                               .value_rank = step.shape.value_rank,
+                               .array_dimensions = step.shape.array_dimensions,
+                               .value = step.node_role ? opcua::Value() : step.value,
+                               .access = writable ? opcua::Access::read_write : opcua::Access::read,
+                               .children = opcua::Children::none});
 }
 
 NodeId SkillFactory::compactId(std::uint16_t index, std::string_view path) const {

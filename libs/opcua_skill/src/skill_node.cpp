@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <utility>
 
 #include "diagnostic.hpp"
@@ -31,18 +33,8 @@ LocalizedText textOf(Name name) {
 
 const skill::Field& fieldOf(const skill::Program& program, NodeRole node_role) {
     const auto& description = program.description();
-    const bool is_result = node_role.kind == NodeKind::result ||
-                           node_role.kind == NodeKind::result_unit ||
-                           node_role.kind == NodeKind::result_range;
-    return (is_result ? description.results : description.parameters)[node_role.field];
-}
-
-Value unitOf(const skill::Field& field) {
-    return Value::of(toOpcua(field.unit));
-}
-
-Value rangeOf(const skill::Field& field) {
-    return Value::of(*field.range);
+    return (isOfResult(node_role.kind) ? description.results
+                                       : description.parameters)[node_role.field];
 }
 
 /// A NodeRole fits into the tag of its Variable.
@@ -117,10 +109,10 @@ Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node,
                 opcua::MethodEffect::tells);
         case NodeKind::parameter_unit:
         case NodeKind::result_unit:
-            return nodes.write(node, unitOf(fieldOf(*program_, node_role)));
+            return nodes.write(node, Value::of(toOpcua(fieldOf(*program_, node_role).unit)));
         case NodeKind::parameter_range:
         case NodeKind::result_range:
-            return nodes.write(node, rangeOf(fieldOf(*program_, node_role)));
+            return nodes.write(node, Value::of(*fieldOf(*program_, node_role).range));
         default:
             if (node_role.kind == NodeKind::parameter && !fieldOf(*program_, node_role).range) {
                 limits_.add(nodes, node, node_role);
@@ -132,15 +124,12 @@ Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node,
 
 Result<void> SkillNode::bindMethod(opcua::AddressSpace& nodes, const NodeId& node,
                                    skill::Method method) {
-    auto set = nodes.setMethod(
+    METIER_TRY(nodes.setMethod(
         node, [this, method](const opcua::CallContext& context, std::span<const Value> inputs) {
             return method == skill::Method::start_with
                        ? startWith(context.session, inputs)
                        : call(context.session, method).map([] { return std::vector<Value>(); });
-        });
-    if (!set) {
-        return set;
-    }
+        }));
     return nodes.setExecutable(node, [this, method](const Session& session) {
         return program_->executable(method, callerOf(session));
     });
@@ -156,41 +145,36 @@ DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
         case NodeKind::state:
         case NodeKind::state_id:
         case NodeKind::state_number:
-            return {readState(node_role), {}, program_->diagnostic().last_transition_time, {}};
+            return {readState(node_role), {}, program_->diagnostic().last_transition_time};
         case NodeKind::transition:
         case NodeKind::transition_id:
         case NodeKind::transition_number:
         case NodeKind::transition_time:
-            return {readTransition(node_role), {}, program_->diagnostic().last_transition_time, {}};
+            return {readTransition(node_role), {}, program_->diagnostic().last_transition_time};
         case NodeKind::sub_state:
         case NodeKind::sub_state_id:
         case NodeKind::sub_state_number:
             return readSubState(node_role);
         case NodeKind::parameter:
-            return {readParameter(node_role), {}, {}, {}};
+            return {readParameter(node_role)};
         case NodeKind::result:
-            return {readResult(node_role), {}, {}, {}};
+            return {readResult(node_role)};
         case NodeKind::diagnostic:
-            return {readDiagnostic(program_->diagnostic(),
-                                   static_cast<DiagnosticItem>(node_role.detail)),
-                    {},
-                    {},
-                    {}};
-        case NodeKind::reason_text: {
-            return {Value::of(readReason(session)), {}, {}, {}};
-        }
+            return {diagnosticItems()[node_role.detail].read(toOpcua(program_->diagnostic()))};
+        case NodeKind::reason_text:
+            return {Value::of(readReason(session))};
         case NodeKind::execution_id:
-            return {Value::of(program_->executionId()), {}, {}, {}};
+            return {Value::of(program_->executionId())};
         case NodeKind::steps:
-            return {Value::of(program_->description().steps), {}, {}, {}};
+            return {Value::of(program_->description().steps)};
         case NodeKind::current_step:
-            return {Value::of(program_->step()), {}, {}, {}};
+            return {Value::of(program_->step())};
         case NodeKind::progress: {
             const auto* progress = std::get_if<double>(&program_->intermediate());
-            return {Value::of(progress == nullptr ? 0.0 : *progress), {}, {}, {}};
+            return {Value::of(progress == nullptr ? 0.0 : *progress)};
         }
         default:
-            return {{}, opcua::status::kBadInternalError, {}, {}};
+            return {{}, opcua::status::kBadInternalError};
     }
 }
 
@@ -241,14 +225,11 @@ DataValue SkillNode::readSubState(NodeRole node_role) const {
     const auto status = active ? opcua::StatusCode() : opcua::status::kBadStateNotActive;
     switch (node_role.kind) {
         case NodeKind::sub_state_id:
-            return {Value::of(active ? context_.ids.sub_states.at(sub_state) : NodeId()),
-                    status,
-                    {},
-                    {}};
+            return {Value::of(active ? context_.ids.sub_states.at(sub_state) : NodeId()), status};
         case NodeKind::sub_state_number:
-            return {Value::of(active ? numberOf(sub_state) : 0U), status, {}, {}};
+            return {Value::of(active ? numberOf(sub_state) : 0U), status};
         default:
-            return {Value::of(active ? textOf(sub_state) : opcua::LocalizedText()), status, {}, {}};
+            return {Value::of(active ? textOf(sub_state) : LocalizedText()), status};
     }
 }
 
@@ -282,22 +263,12 @@ Result<void> SkillNode::write(const opcua::WriteContext& writer, std::uint32_t t
 }
 
 Result<void> SkillNode::call(const Session& session, skill::Method method) {
-    const auto caller = callerOf(session);
-    switch (method) {
-        case skill::Method::start:
-            return remember(session, program_->start(caller));
-        case skill::Method::suspend:
-            return remember(session, program_->suspend(caller));
-        case skill::Method::resume:
-            return remember(session, program_->resume(caller));
-        case skill::Method::halt:
-            return remember(session, program_->halt(caller));
-        case skill::Method::reset:
-            return remember(session, program_->reset(caller));
-        case skill::Method::start_with:
-            break;  // has arguments
-    }
-    return fail(Errc::internal, "unknown method");
+    using skill::Program;
+    // In the order of skill::Method, without StartWith, which has arguments.
+    constexpr std::array kCommands{&Program::start, &Program::suspend, &Program::resume,
+                                   &Program::halt, &Program::reset};
+    const auto command = kCommands.at(static_cast<std::size_t>(method));
+    return remember(session, std::invoke(command, *program_, callerOf(session)));
 }
 
 Result<void> SkillNode::takeGiven(const opcua::KeyValue& given, Given& into) const {
@@ -356,15 +327,11 @@ Result<std::vector<Value>> SkillNode::startWith(const Session& session,
     const auto epoch = inputs[3].as<std::uint64_t>();
     const auto deadline = inputs[4].as<UtcTime>();
     if (!id || !given || !action || !epoch || !deadline) {
-        auto refused =
-            remember(session, given ? fail(Errc::type_mismatch, "StartWith") : fail(given.error()));
-        return fail(std::move(refused.error()));
+        METIER_TRY(remember(session,
+                            given ? fail(Errc::type_mismatch, "StartWith") : fail(given.error())));
     }
     const auto on_owner_loss = ownerLossActionFrom(*action);
-    if (!on_owner_loss) {
-        auto refused = remember(session, fail(on_owner_loss.error()));
-        return fail(std::move(refused.error()));
-    }
+    METIER_TRY(on_owner_loss ? Result<void>() : remember(session, fail(on_owner_loss.error())));
     auto started = program_->startWith(
         callerOf(session),
         {.execution_id = *id,
@@ -373,11 +340,7 @@ Result<std::vector<Value>> SkillNode::startWith(const Session& session,
          .epoch = *epoch,
          .deadline = *deadline <= UtcTime{} ? std::optional<UtcTime>{} : *deadline,
          .parent = std::move(given->parent)});
-    if (!started) {
-        auto refused = remember(session, fail(started.error()));
-        return fail(std::move(refused.error()));
-    }
-    context_.refusals.accepted(session, *this);
+    METIER_TRY(remember(session, started ? Result<void>() : fail(started.error())));
     return std::vector{Value::of(*started)};
 }
 
@@ -435,27 +398,24 @@ void SkillNode::auditOwnAct(const skill::TransitionEvent& event) {
 
 void SkillNode::onTransition(const skill::TransitionEvent& event) {
     auditOwnAct(event);
-    opcua::Event occurrence;
-    occurrence.source = id_;
-    occurrence.source_name = program_->description().name;
-    occurrence.time = event.time;
-    occurrence.severity = event.severity;
-    occurrence.message = {"en", event.message};
-    occurrence.fields = transitionValues(event);
-    raise(context_.emitter, occurrence);
+    raise(context_.emitter, {.source = id_,
+                             .source_name = program_->description().name,
+                             .time = event.time,
+                             .severity = event.severity,
+                             .message = {"en", event.message},
+                             .fields = transitionValues(event)});
 }
 
 void SkillNode::onStopping(const skill::StoppingEvent& event) {
-    opcua::Event occurrence;
-    occurrence.source = id_;
-    occurrence.source_name = program_->description().name;
-    occurrence.time = event.time;
-    occurrence.severity = kInformation;
-    occurrence.message = {"en",
-                          fmt::format("{}: comes to rest, then {}: {}", occurrence.source_name,
-                                      skill::toString(event.to), event.reason_text)};
-    occurrence.fields = stoppingValues(event);
-    raise(context_.stopping, occurrence);
+    const auto& name = program_->description().name;
+    raise(context_.stopping,
+          {.source = id_,
+           .source_name = name,
+           .time = event.time,
+           .severity = kInformation,
+           .message = {"en", fmt::format("{}: comes to rest, then {}: {}", name,
+                                         skill::toString(event.to), event.reason_text)},
+           .fields = stoppingValues(event)});
 }
 
 void SkillNode::raise(opcua::EventEmitter& emitter, const opcua::Event& occurrence) {

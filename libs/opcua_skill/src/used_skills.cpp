@@ -3,7 +3,6 @@
 #include <array>
 #include <utility>
 
-#include "found_or_added.hpp"
 #include "model_ids.hpp"
 
 namespace metier::opcua_skill {
@@ -17,11 +16,10 @@ const NodeId kNonHierarchicalReferences{0, 32U};
 constexpr const char* kUsedSkills = "UsedSkills";
 
 Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& user, std::uint16_t metier) {
-    opcua::ObjectSpec spec;
-    spec.node.parent = user;
-    spec.node.browse_name = {metier, kUsedSkills};
-    spec.node.description = {"en", "The skills of other servers that it runs."};
-    return foundOrAdded(nodes, spec);
+    return foundOrAdded(
+        nodes, {.node = {.parent = user,
+                         .browse_name = {metier, kFolder},
+                         .description = {"en", "The skills of other servers that it runs."}}});
 }
 
 Result<void> setProperties(AddressSpace& nodes, const NodeId& object, std::uint16_t metier,
@@ -42,33 +40,32 @@ Result<void> setProperties(AddressSpace& nodes, const NodeId& object, std::uint1
 
 Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const NodeId& used) {
     METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
-    const auto uses = typeDirectlyBelow(nodes, kNonHierarchicalReferences, {metier, "UsesSkill"});
-    return uses ? nodes.addReference(user, *uses, used) : Result<void>(fail(uses.error()));
+    METIER_ASSIGN(const auto uses,
+                  typeDirectlyBelow(nodes, kNonHierarchicalReferences, {metier, "UsesSkill"}));
+    return nodes.addReference(user, uses, used);
 }
 
 Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const RemoteSkill& used) {
     METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
-    const auto folder = folderOf(nodes, user, metier);
-    const auto type =
-        typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {metier, "UsedSkillType"});
-    if (!folder || !type) {
-        return fail(folder ? type.error() : folder.error());
-    }
-    opcua::ObjectSpec spec;
-    spec.node.parent = *folder;
-    spec.node.browse_name = {folder->namespaceIndex(), used.alias};
-    spec.node.description = {"en", "Where the skill is that it calls " + used.alias + "."};
-    spec.type = *type;
-    METIER_ASSIGN(const auto object, nodes.addObject(spec));
+    METIER_ASSIGN(const auto folder, folderOf(nodes, user, metier));
+    METIER_ASSIGN(const auto type,
+                  typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {metier, "UsedSkillType"}));
+    METIER_ASSIGN(
+        const auto object,
+        nodes.addObject({.node = {.parent = folder,
+                                  .browse_name = {folder.namespaceIndex(), used.alias},
+                                  .description = {"en", "Where the skill is that it calls " +
+                                                            used.alias + "."}},
+                         .type = type}));
     METIER_TRY(setProperties(nodes, object, metier, used));
     return publishUse(nodes, user, object);
 }
 
 Result<void> updateUse(AddressSpace& nodes, const NodeId& user, const RemoteSkill& used) {
     METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
-    METIER_ASSIGN(const auto folder, nodes.find(user, {metier, kUsedSkills}));
-    const auto object = nodes.find(folder, {folder.namespaceIndex(), used.alias});
-    return object ? setProperties(nodes, *object, metier, used) : fail(object.error());
+    METIER_ASSIGN(const auto folder, nodes.find(user, {metier, kFolder}));
+    METIER_ASSIGN(const auto object, nodes.find(folder, {folder.namespaceIndex(), used.alias}));
+    return setProperties(nodes, object, metier, used);
 }
 
 Result<NodeId> findSkillObject(const AddressSpace& nodes, const NodeId& skills,

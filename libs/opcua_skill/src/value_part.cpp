@@ -1,5 +1,6 @@
 #include "value_part.hpp"
 
+#include <array>
 #include <utility>
 
 #include "metier/opcua_skill/values.hpp"
@@ -8,47 +9,22 @@ namespace metier::opcua_skill {
 
 namespace {
 
-double* component(skill::Frame& frame, Part part) {
-    switch (part) {
-        case Part::x:
-            return &frame.x;
-        case Part::y:
-            return &frame.y;
-        case Part::z:
-            return &frame.z;
-        case Part::a:
-            return &frame.a;
-        case Part::b:
-            return &frame.b;
-        case Part::c:
-            return &frame.c;
-        default:
-            return nullptr;
-    }
-}
-
-double* component(skill::Vector3& vector, Part part) {
-    switch (part) {
-        case Part::x:
-            return &vector.x;
-        case Part::y:
-            return &vector.y;
-        case Part::z:
-            return &vector.z;
-        default:
-            return nullptr;
-    }
-}
-
 /// The component of a Frame or a Vector3; null for all else.
 double* componentOf(skill::Value& value, Part part) {
-    if (auto* frame = std::get_if<skill::Frame>(&value)) {
-        return component(*frame, part);
+    using skill::Frame;
+    using skill::Vector3;
+    constexpr std::array kOfFrame{&Frame::x, &Frame::y, &Frame::z, &Frame::a, &Frame::b, &Frame::c};
+    constexpr std::array kOfVector{&Vector3::x, &Vector3::y, &Vector3::z};
+    if (part < Part::x) {
+        return nullptr;
     }
-    if (auto* vector = std::get_if<skill::Vector3>(&value)) {
-        return component(*vector, part);
+    const auto index = static_cast<std::size_t>(part) - static_cast<std::size_t>(Part::x);
+    if (auto* frame = std::get_if<Frame>(&value)) {
+        return &(frame->*kOfFrame.at(index));
     }
-    return nullptr;
+    auto* vector = std::get_if<Vector3>(&value);
+    return vector != nullptr && index < kOfVector.size() ? &(vector->*kOfVector.at(index))
+                                                         : nullptr;
 }
 
 }  // namespace

@@ -27,22 +27,30 @@ struct TypeRow {
     skill::ValueType type;
     std::uint32_t data_type;  ///< numeric id in namespace 0
     std::int32_t rank;
+    Result<skill::Value> (*take)(const opcua::Value& value);
 };
 
 constexpr std::array kTypes{
-    TypeRow{skill::ValueType::boolean, 1, kScalar},
-    TypeRow{skill::ValueType::int32, 6, kScalar},
-    TypeRow{skill::ValueType::uint32, 7, kScalar},
-    TypeRow{skill::ValueType::uint64, 9, kScalar},
-    TypeRow{skill::ValueType::number, 11, kScalar},
-    TypeRow{skill::ValueType::text, 12, kScalar},
-    TypeRow{skill::ValueType::frame, 18814, kScalar},
-    TypeRow{skill::ValueType::vector3, 18808, kScalar},
-    TypeRow{skill::ValueType::numbers, 11, kArray},
-    TypeRow{skill::ValueType::texts, 12, kArray},
-    TypeRow{skill::ValueType::ranges, 884, kArray},
-    TypeRow{skill::ValueType::frames, 18814, kArray},
+    TypeRow{skill::ValueType::boolean, 1, kScalar, take<bool>},
+    TypeRow{skill::ValueType::int32, 6, kScalar, take<std::int32_t>},
+    TypeRow{skill::ValueType::uint32, 7, kScalar, take<std::uint32_t>},
+    TypeRow{skill::ValueType::uint64, 9, kScalar, take<std::uint64_t>},
+    TypeRow{skill::ValueType::number, 11, kScalar, take<double>},
+    TypeRow{skill::ValueType::text, 12, kScalar, take<std::string>},
+    TypeRow{skill::ValueType::frame, 18814, kScalar, take<opcua::ThreeDFrame>},
+    TypeRow{skill::ValueType::vector3, 18808, kScalar, take<opcua::ThreeDVector>},
+    TypeRow{skill::ValueType::numbers, 11, kArray, take<std::vector<double>>},
+    TypeRow{skill::ValueType::texts, 12, kArray, take<std::vector<std::string>>},
+    TypeRow{skill::ValueType::ranges, 884, kArray, take<std::vector<opcua::Range>>},
+    TypeRow{skill::ValueType::frames, 18814, kArray, take<std::vector<opcua::ThreeDFrame>>},
 };
+
+/// Null for a type that no field has.
+const TypeRow* rowOf(skill::ValueType type) {
+    const auto* row = std::find_if(kTypes.begin(), kTypes.end(),
+                                   [&](const TypeRow& entry) { return entry.type == type; });
+    return row == kTypes.end() ? nullptr : row;
+}
 
 std::int32_t unitId(std::string_view code) {
     std::int32_t id = 0;
@@ -71,53 +79,32 @@ Result<skill::Value> fromOpcua(const opcua::Value& value, skill::ValueType type)
     if (value.isEmpty()) {
         return skill::Value();
     }
-    switch (type) {
-        case skill::ValueType::boolean:
-            return take<bool>(value);
-        case skill::ValueType::int32:
-            return take<std::int32_t>(value);
-        case skill::ValueType::uint32:
-            return take<std::uint32_t>(value);
-        case skill::ValueType::uint64:
-            return take<std::uint64_t>(value);
-        case skill::ValueType::number:
-            return take<double>(value);
-        case skill::ValueType::text:
-            return take<std::string>(value);
-        case skill::ValueType::frame:
-            return take<opcua::ThreeDFrame>(value);
-        case skill::ValueType::vector3:
-            return take<opcua::ThreeDVector>(value);
-        case skill::ValueType::numbers:
-            return take<std::vector<double>>(value);
-        case skill::ValueType::texts:
-            return take<std::vector<std::string>>(value);
-        case skill::ValueType::ranges:
-            return take<std::vector<opcua::Range>>(value);
-        case skill::ValueType::frames:
-            return take<std::vector<opcua::ThreeDFrame>>(value);
-        case skill::ValueType::null:
-            break;
-    }
-    return fail(Errc::type_mismatch, fmt::format("{}: no skill takes it", value.typeName()));
+    const auto* row = rowOf(type);
+    return row == nullptr
+               ? fail(Errc::type_mismatch, fmt::format("{}: no skill takes it", value.typeName()))
+               : row->take(value);
 }
 
 skill::ValueType valueTypeOf(const opcua::Value& value) {
-    return valueTypeOf(VariableShape{value.dataType(), value.isArray() ? kArray : kScalar});
+    return valueTypeOf(opcua::VariableShape{value.dataType(), value.isArray() ? kArray : kScalar});
 }
 
-VariableShape shapeOf(skill::ValueType type) {
-    const auto* row = std::find_if(kTypes.begin(), kTypes.end(),
-                                   [&](const TypeRow& entry) { return entry.type == type; });
-    if (row == kTypes.end()) {
-        return {opcua::NodeId(0, 24), kScalar};
+opcua::VariableShape shapeOf(skill::ValueType type) {
+    const auto* row = rowOf(type);
+    if (row == nullptr) {
+        return {opcua::ids::kBaseDataType};
     }
-    return {opcua::NodeId(0, row->data_type), row->rank};
+    opcua::VariableShape shape{opcua::NodeId(0, row->data_type), row->rank};
+    if (row->rank == kArray) {
+        shape.array_dimensions = {0};
+    }
+    return shape;
 }
 
-skill::ValueType valueTypeOf(const VariableShape& shape) {
+skill::ValueType valueTypeOf(const opcua::VariableShape& shape) {
     const auto* row = std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& entry) {
-        return shape == VariableShape{opcua::NodeId(0, entry.data_type), entry.rank};
+        return shape.data_type == opcua::NodeId(0, entry.data_type) &&
+               shape.value_rank == entry.rank;
     });
     return row == kTypes.end() ? skill::ValueType::null : row->type;
 }

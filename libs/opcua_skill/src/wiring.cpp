@@ -1,4 +1,4 @@
-#include "wiring.hpp"
+#include "skill_factory.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <string_view>
+
 #include "diagnostic.hpp"
 #include "metier/skill/program_observer.hpp"
 #include "owner_loss.hpp"
@@ -85,10 +88,11 @@ TEST(Values, ShapesLeadBackToTheirTypes) {
         const auto type = skill::typeOf(value);
         EXPECT_EQ(valueTypeOf(shapeOf(type)), type) << skill::toString(type);
     }
-    EXPECT_EQ(shapeOf(ValueType::null), (VariableShape{opcua::ids::kBaseDataType, -1}));
+    EXPECT_EQ(shapeOf(ValueType::null).data_type, opcua::ids::kBaseDataType);
+    EXPECT_EQ(shapeOf(ValueType::null).value_rank, -1);
     EXPECT_EQ(valueTypeOf(shapeOf(ValueType::null)), ValueType::null);
-    EXPECT_EQ(valueTypeOf(VariableShape{NodeId(0, 11U), 2}), ValueType::null);  // a matrix
-    EXPECT_EQ(valueTypeOf(VariableShape{NodeId(1, 11U), -1}), ValueType::null);
+    EXPECT_EQ(valueTypeOf(opcua::VariableShape{NodeId(0, 11U), 2}), ValueType::null);  // a matrix
+    EXPECT_EQ(valueTypeOf(opcua::VariableShape{NodeId(1, 11U), -1}), ValueType::null);
 }
 
 // Ids of UNECE Recommendation 20 as OPC 10000-8 publishes them.
@@ -197,9 +201,12 @@ TEST(Diagnostics, NameEachInputWithItsTypeAndTheRefusal) {
     EXPECT_EQ(shown.last_method_input_values[0], opcua::Value::of(std::vector{0.5, 1.0}));
     EXPECT_TRUE(shown.last_method_input_values[1].isEmpty());
     EXPECT_EQ(shown.last_method_return_status, opcua::status::kBadOutOfRange);
-    EXPECT_EQ(readDiagnostic(diagnostic, DiagnosticItem::last_method_return_status),
-              opcua::Value::of(opcua::status::kBadOutOfRange));
-    EXPECT_EQ(readDiagnostic(diagnostic, DiagnosticItem::last_method_input_values).size(), 2U);
+    const auto read = [&shown](std::string_view path) {
+        const auto items = diagnosticItems();
+        return std::ranges::find(items, path, &DiagnosticItem::path)->read(shown);
+    };
+    EXPECT_EQ(read("/LastMethodReturnStatus"), opcua::Value::of(opcua::status::kBadOutOfRange));
+    EXPECT_EQ(read("/LastMethodInputValues").size(), 2U);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ public:
     std::vector<skill::Program*> programs() const;
 
 private:
-    class State;
+    struct State;
     explicit SkillServer(std::unique_ptr<State> state);
 
     std::unique_ptr<State> state_;

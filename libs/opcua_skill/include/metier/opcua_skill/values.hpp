@@ -1,6 +1,7 @@
 #pragma once
 
 #include "metier/base/error.hpp"
+#include "metier/opcua/address_space.hpp"
 #include "metier/opcua/types.hpp"
 #include "metier/opcua/value.hpp"
 #include "metier/skill/field.hpp"
@@ -21,16 +22,12 @@ Result<skill::Value> fromOpcua(const opcua::Value& value, skill::ValueType type)
 /// Type of a value whose field is not known; `null` if skills have no such type.
 skill::ValueType valueTypeOf(const opcua::Value& value);
 
-/// Data type and value rank (-1 scalar, 1 array) of the Variable for a type of value.
-struct VariableShape {
-    opcua::NodeId data_type;
-    std::int32_t value_rank = -1;
-    bool operator==(const VariableShape&) const = default;
-};
-VariableShape shapeOf(skill::ValueType type);
+/// Data type, value rank (-1 scalar, 1 array) and dimensions of the Variable for a type of value.
+opcua::VariableShape shapeOf(skill::ValueType type);
 
-/// Inverse of shapeOf(); `null` if skills have no such type. The caller resolves subtypes.
-skill::ValueType valueTypeOf(const VariableShape& shape);
+/// Inverse of shapeOf(), whatever the dimensions; `null` if skills have no such type. The caller
+/// resolves subtypes.
+skill::ValueType valueTypeOf(const opcua::VariableShape& shape);
 
 /// Converts a unit, with its id of UNECE Recommendation 20 (OPC 10000-8, 5.6.3.3).
 opcua::EuInformation toOpcua(const skill::Unit& unit);
