@@ -1,7 +1,11 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <string>
+
+#include "metier/base/stable_hash.hpp"
 
 namespace metier::composition {
 
@@ -14,6 +18,14 @@ struct StepExecution {
 };
 
 /// "ORIGIN/EXECUTION/STEP/COUNT", or with a hash of the execution where that is too long for an id.
-std::string stepExecutionId(const StepExecution& used);
+inline std::string stepExecutionId(const StepExecution& used) {
+    constexpr std::size_t kLongestId = 128;
+    const auto own = fmt::format("/{}/{}", used.step, used.count);
+    auto above = fmt::format("{}/{}", used.origin, used.execution);
+    if (above.size() + own.size() > kLongestId) {
+        above = above.substr(0, used.origin.size() + 1) + fmt::format("{:016x}", stableHash(above));
+    }
+    return above + own;
+}
 
 }  // namespace metier::composition

@@ -73,14 +73,6 @@ void LocalUsedSkill::end(UsedSkillEnd end) {
     post([end = std::move(end)](UsedSkillListener& to) mutable { to.onEnd(std::move(end)); });
 }
 
-Result<void> LocalUsedSkill::suspend() {
-    return program_.suspend(caller_);
-}
-
-Result<void> LocalUsedSkill::resume() {
-    return program_.resume(caller_);
-}
-
 void LocalUsedSkill::halt() {
     if (const auto halted = program_.halt(caller_); !halted) {
         post([error = halted.error()](UsedSkillListener& to) {

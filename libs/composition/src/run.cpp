@@ -113,10 +113,6 @@ skill::StartRequest Run::stepExecution(const std::string& step, const UsedSkill&
     return request;
 }
 
-void Run::detach(CallActivity& call) {
-    std::erase(calls_, &call);
-}
-
 void Run::suspend() {
     held_ = true;
     suspending_ = true;

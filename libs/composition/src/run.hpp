@@ -99,7 +99,7 @@ public:
     void attach(CallActivity& call) { calls_.push_back(&call); }
     /// Somebody else has suspended a used skill: the whole follows. \param why for a person
     void suspendedByOther(std::string why) { execution_.suspend(std::move(why)); }
-    void detach(CallActivity& call);
+    void detach(CallActivity& call) { std::erase(calls_, &call); }
 
 private:
     friend class StepTimer;

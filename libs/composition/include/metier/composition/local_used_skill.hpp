@@ -33,8 +33,8 @@ public:
                std::function<void(Result<skill::CheckReport>)> done) override;
     void compareClocks(std::function<void(Result<ClockOffset>)> done) override;
     void begin(skill::StartRequest request, UsedSkillListener& listener) override;
-    Result<void> suspend() override;
-    Result<void> resume() override;
+    Result<void> suspend() override { return program_.suspend(caller_); }
+    Result<void> resume() override { return program_.resume(caller_); }
     void halt() override;
     void release() override { link_->listener = nullptr; }
 
