@@ -27,13 +27,28 @@ class Questions {
 public:
     explicit Questions(opcua::Client& client) : client_(client) {}
 
-    opcua::Answer<std::vector<opcua::Reference>> browse(opcua::BrowseQuery query);
+    opcua::Answer<std::vector<opcua::ReferenceDescription>> browse(opcua::BrowseQuery query) {
+        METIER_TRY(next());
+        return client_.browse(std::move(query));
+    }
     opcua::Answer<opcua::Value> read(const opcua::NodeId& node,
-                                     opcua::AttributeId attribute = opcua::AttributeId::value);
-    opcua::Answer<std::vector<opcua::DataValue>> readMany(std::vector<opcua::ReadItem> items);
+                                     opcua::AttributeId attribute = opcua::AttributeId::value) {
+        METIER_TRY(next());
+        return client_.read(node, attribute);
+    }
+    opcua::Answer<std::vector<opcua::DataValue>> readMany(std::vector<opcua::ReadItem> items) {
+        METIER_TRY(next());
+        return client_.readMany(std::move(items));
+    }
 
 private:
-    opcua::Answer<> next();
+    opcua::Answer<> next() {
+        if (left_-- > 0 && std::chrono::steady_clock::now() < end_) {
+            return {};
+        }
+        return tl::unexpected(failureOf(
+            Errc::timeout, "the server goes on telling of more than anybody would look at"));
+    }
 
     opcua::Client& client_;
     SteadyTime end_ = std::chrono::steady_clock::now() + std::chrono::seconds(30);
