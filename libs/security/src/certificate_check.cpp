@@ -1,11 +1,10 @@
-#include "certificate_check.hpp"
-
 #include <fmt/format.h>
 #include <openssl/err.h>
 #include <openssl/x509_vfy.h>
 
 #include <algorithm>
 
+#include "holdings.hpp"
 #include "openssl.hpp"
 
 namespace metier::security {

@@ -49,4 +49,9 @@ struct TrustStore::Holdings {
     std::vector<CrlPtr> lists;
 };
 
+/// Checks that a certificate is trusted, strong enough, meant for this use and valid at this time.
+tl::expected<void, CertificateRefusal> checkCertificate(const Certificate& certificate,
+                                                        const TrustStore::Holdings& holdings,
+                                                        UtcTime now);
+
 }  // namespace metier::security

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <openssl/err.h>
 
-#include "certificate_check.hpp"
 #include "holdings.hpp"
 #include "openssl.hpp"
 #include "private_file.hpp"
