@@ -27,7 +27,7 @@ class Questions {
 public:
     explicit Questions(opcua::Client& client) : client_(client) {}
 
-    opcua::Answer<std::vector<opcua::ReferenceDescription>> browse(opcua::BrowseQuery query) {
+    opcua::Answer<std::vector<opcua::Reference>> browse(opcua::BrowseQuery query) {
         METIER_TRY(next());
         return client_.browse(std::move(query));
     }

@@ -12,7 +12,7 @@
 namespace metier::security {
 namespace {
 
-constexpr mode_t kOwner = 0600;
+constexpr mode_t kOwnerOnly = 0600;
 constexpr mode_t kEverybody = 0644;
 constexpr mode_t kOthers = 077;
 
@@ -67,7 +67,7 @@ bool writeAll(const Descriptor& file, std::string_view content) {
 
 Result<void> writeWhole(const std::filesystem::path& file, std::string_view content,
                         Readers readers) {
-    METIER_TRY(makeOwnFolder(file.parent_path()));
+    METIER_TRY(makeFolder(file.parent_path()));
     auto pattern = file.string() + ".XXXXXX";
     const Descriptor descriptor(::mkstemp(pattern.data()));  // accessible to its owner only
     if (!descriptor) {

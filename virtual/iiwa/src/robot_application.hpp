@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "arm.hpp"
-#include "metier/motion/twist.hpp"
+#include "metier/motion/wrench.hpp"
 #include "wire.hpp"
 
 namespace metier::virtual_iiwa {

@@ -108,7 +108,7 @@ bool ServoRun::accept(const device::JointArray& set_point) noexcept {
             return refuse({Kind::not_finite, axis, value, 0.0, {}});
         }
         const double within = std::clamp(value, limits.lower, limits.upper);
-        if (std::abs(value - within) > kRounding) {
+        if (std::abs(value - within) > kJointRounding) {
             return refuse({Kind::position, axis, value, within, {}});
         }
         const double longest = kStepFactor * limits.velocity * cycle_ + kSmallStep;

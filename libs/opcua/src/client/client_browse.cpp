@@ -85,7 +85,7 @@ void Browsing::take(UA_BrowseResult& result) {
     }
     for (std::size_t i = 0; i < result.referencesSize; ++i) {
         if (result.references[i].nodeId.serverIndex == 0) {
-            references_.push_back(descriptionFrom(result.references[i]));
+            references_.push_back(fromNative(result.references[i]));
         }
     }
     if (result.continuationPoint.length == 0) {

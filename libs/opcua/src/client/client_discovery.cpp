@@ -25,8 +25,7 @@ EndpointDescription described(const UA_EndpointDescription& native) {
     return endpoint;
 }
 
-ServerDescription fromNative(const UA_ApplicationDescription& native) {
-    using opcua::fromNative;
+ServerDescription described(const UA_ApplicationDescription& native) {
     return {textFrom(native.applicationUri), textFrom(native.productUri),
             fromNative(native.applicationName),
             static_cast<ApplicationType>(native.applicationType),

@@ -9,7 +9,7 @@
 #include "metier/robot_skills/move_parameters.hpp"
 #include "moves/acceleration_phase.hpp"
 #include "moves/arm_work.hpp"
-#include "moves/controller_planned_move_skills.hpp"
+#include "moves/move_skills.hpp"
 #include "moves/move_variant.hpp"
 
 namespace metier::robot_skills {
@@ -29,7 +29,7 @@ void tellMoveDone(const skill::ExecutionHandle& tell, const MoveResults& results
 class ControllerPlannedMove final : public device::MotionObserver {
 public:
     struct Setup {
-        PlanningArm robot;
+        MovedArm robot;
         motion::Trajectory trajectory;
         PathDeviationMeter::Path path;
         MoveEnd end;

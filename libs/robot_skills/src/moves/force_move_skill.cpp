@@ -225,8 +225,7 @@ Work forceWork(const MovedArm& arm, const Trajectory& trajectory,
     };
     return std::make_unique<ControllerPlannedWork>(
         *arm.planner, std::move(*motion),
-        ControllerPlannedMove::Setup{arm.arm, arm.clock, trajectory, Path::cartesian_line,
-                                     MoveEnd::pose, tell});
+        ControllerPlannedMove::Setup{arm, trajectory, Path::cartesian_line, MoveEnd::pose, tell});
 }
 
 }  // namespace

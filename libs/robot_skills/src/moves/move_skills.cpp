@@ -27,8 +27,7 @@ std::unique_ptr<skill::Skill> makeMove(const MovedArm& arm, MoveVariant<Paramete
             if (auto motion = controllerPlannedMotion({arm.model, trajectory, path, parameters})) {
                 return std::make_unique<ControllerPlannedWork>(
                     *arm.planner, std::move(*motion),
-                    ControllerPlannedMove::Setup{arm.arm, arm.clock, trajectory, path, end,
-                                                 tellMoveDone});
+                    ControllerPlannedMove::Setup{arm, trajectory, path, end, tellMoveDone});
             }
         }
         return makeStreamedWork(arm, {trajectory, path, parameters});
