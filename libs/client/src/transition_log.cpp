@@ -15,7 +15,7 @@ using skill::TransitionEvent;
 constexpr std::size_t kKept = 1000;
 
 /// The fields that watchTransitions() asks for, in its order.
-enum Field : std::size_t {
+enum EventField : std::size_t {
     kNumber,
     kTime,
     kMessage,

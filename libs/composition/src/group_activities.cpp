@@ -12,7 +12,7 @@ namespace metier::composition {
 
 namespace {
 
-constexpr double kMostRounds = 1e6;
+constexpr double kMostRepeats = 1e6;
 
 }  // namespace
 
@@ -147,9 +147,9 @@ void ChoiceActivity::start() {
 void LoopActivity::start() {
     if (step_.times) {
         const auto times = run_.scope().number(*step_.times);
-        if (!times || !(*times >= 0.0 && *times <= kMostRounds) || *times != std::floor(*times)) {
+        if (!times || !(*times >= 0.0 && *times <= kMostRepeats) || *times != std::floor(*times)) {
             end(failed(times ? fmt::format("times is {}; it needs a whole number from 0 to {}",
-                                           *times, kMostRounds)
+                                           *times, kMostRepeats)
                              : times.error().message));
             return;
         }

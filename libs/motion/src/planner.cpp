@@ -16,8 +16,6 @@ namespace metier::motion {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 double perAxis(const JointVector& values, std::size_t axis) {
     return values.empty() ? 0.0 : values[axis];
 }

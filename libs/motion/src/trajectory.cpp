@@ -11,8 +11,6 @@ namespace metier::motion {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 PathDeviation deviationAt(const Pose& planned, const Pose& pose, double s) {
     return {distanceBetween(planned, pose), rotationAngleBetween(planned.rotation, pose.rotation),
             s};

@@ -59,7 +59,7 @@ const std::array<Item, 13>& items() {
 Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& skill, std::uint16_t metier) {
     return foundOrAdded(nodes,
                         {.node = {.parent = skill,
-                                  .browse_name = {metier, kFolder},
+                                  .browse_name = {metier, kExecutionRecords},
                                   .description = {"en", "The last executions, the latest first."}},
                          .type = opcua::ids::kFolderType});
 }

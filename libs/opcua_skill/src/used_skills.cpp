@@ -18,7 +18,7 @@ constexpr const char* kUsedSkills = "UsedSkills";
 Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& user, std::uint16_t metier) {
     return foundOrAdded(
         nodes, {.node = {.parent = user,
-                         .browse_name = {metier, kFolder},
+                         .browse_name = {metier, kUsedSkills},
                          .description = {"en", "The skills of other servers that it runs."}}});
 }
 
@@ -63,7 +63,7 @@ Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const RemoteSki
 
 Result<void> updateUse(AddressSpace& nodes, const NodeId& user, const RemoteSkill& used) {
     METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
-    METIER_ASSIGN(const auto folder, nodes.find(user, {metier, kFolder}));
+    METIER_ASSIGN(const auto folder, nodes.find(user, {metier, kUsedSkills}));
     METIER_ASSIGN(const auto object, nodes.find(folder, {folder.namespaceIndex(), used.alias}));
     return setProperties(nodes, object, metier, used);
 }

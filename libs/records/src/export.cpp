@@ -46,7 +46,7 @@ Result<void> copy(Database& from, Database& into, const Copied& copied) {
                                  copied.table, copied.key);
     std::int64_t last = std::numeric_limits<std::int64_t>::min();
     while (true) {
-        METIER_ASSIGN(const auto rows, from.query(sql, {last, kAtOnce}));
+        METIER_ASSIGN(const auto rows, from.query(sql, {last, kRowsAtOnce}));
         if (rows.empty()) {
             return {};
         }

@@ -12,7 +12,7 @@
 namespace metier::records {
 namespace {
 
-constexpr Dialect kDialect{
+constexpr Dialect kPostgres{
     .number_key = "BIGSERIAL PRIMARY KEY",
     .blob = "BYTEA",
     .tables = "SELECT tablename::text FROM pg_tables WHERE schemaname = 'metier'",
@@ -21,11 +21,11 @@ constexpr Dialect kDialect{
         "SELECT (SELECT coalesce(sum(pg_column_size(e.*)), 0) FROM executions e)::bigint + "
         "(SELECT coalesce(sum(pg_column_size(p.*)), 0) FROM parts p)::bigint",
     .shrink = ""};  // autovacuum does
-constexpr std::size_t kMostStatements = 64;
+constexpr std::size_t kMostPrepared = 64;
 /// For one statement. A database that hangs does not keep its own deadline, so that the connection
 /// is cut a little later.
-constexpr std::chrono::seconds kLongestWrite{30};
-constexpr std::chrono::seconds kLongestRead{10};
+constexpr std::chrono::seconds kLongestStatement{30};
+constexpr std::chrono::seconds kLongestQuery{10};
 constexpr std::chrono::seconds kGrace{5};
 /// Any number that others do not use: who writes records holds this lock.
 constexpr std::string_view kLock = "SELECT pg_advisory_xact_lock(5641903277)";
@@ -163,7 +163,7 @@ Result<std::unique_ptr<Database>> PostgresDatabase::open(const std::string& url,
     } catch (const std::exception& error) {
         return fail(Errc::connection_lost, fmt::format("{}: {}", nameOf(url), firstLine(error)));
     }
-    database->longest_call_ = access == Store::Access::write ? kLongestWrite : kLongestRead;
+    database->longest_call_ = access == Store::Access::write ? kLongestStatement : kLongestQuery;
     auto done = database->script(fmt::format(
         "SET client_min_messages = warning; SET client_encoding = 'UTF8'; SET search_path TO "
         "metier; SET bytea_output = 'hex'; SET lock_timeout = '5s'; SET statement_timeout = '{}s'",
@@ -179,14 +179,14 @@ Result<std::unique_ptr<Database>> PostgresDatabase::open(const std::string& url,
 }
 
 const Dialect& PostgresDatabase::dialect() const noexcept {
-    return kDialect;
+    return kPostgres;
 }
 
 const std::string& PostgresDatabase::prepared(std::string_view sql) {
     if (const auto known = statements_.find(sql); known != statements_.end()) {
         return known->second;
     }
-    if (statements_.size() >= kMostStatements) {
+    if (statements_.size() >= kMostPrepared) {
         for (const auto& [text, name] : statements_) {
             connection_.unprepare(name);
         }

@@ -12,7 +12,7 @@
 namespace metier::records {
 namespace {
 
-constexpr mode_t kOwnerOnly = 0600;
+constexpr mode_t kLockMode = 0600;
 constexpr int kBits = 62;  // number of bits used of an off_t
 
 /// The byte of a server; the file stays empty.
@@ -28,7 +28,7 @@ struct flock rangeOf(const std::string& server, short type) {
 }  // namespace
 
 Result<std::shared_ptr<ServerLocks>> ServerLocks::open(const std::string& file) {
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kOwnerOnly);
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kLockMode);
     std::shared_ptr<ServerLocks> locks(new ServerLocks(descriptor, file));
     return descriptor < 0 ? Result<std::shared_ptr<ServerLocks>>(locks->failed()) : locks;
 }

@@ -13,11 +13,11 @@
 namespace metier::security {
 namespace {
 
-constexpr mode_t kOwnerOnly = 0600;
+constexpr mode_t kPartMode = 0600;
 constexpr off_t kLongestLine = 65'536;  // length examined from the end of the file
 
 Descriptor openPart(const std::filesystem::path& path) {
-    return Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, kOwnerOnly));
+    return Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, kPartMode));
 }
 
 /// End of a part.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "metier/base/numbers.hpp"
+
 namespace metier::virtual_iiwa {
 
 namespace {

@@ -18,7 +18,7 @@ constexpr std::size_t kHeader = 3;
 constexpr std::size_t kMostRecipes = 255;
 constexpr std::size_t kLongestList = 2048;
 // A client that leaves more than this unread gets no further samples [bytes].
-constexpr std::size_t kMostUnread = 64'000;
+constexpr std::size_t kMostUnreadRtde = 64'000;
 
 constexpr std::uint8_t kError = 1;
 constexpr std::uint8_t kWarning = 2;
@@ -189,7 +189,7 @@ void RtdeSession::answerStart() {
 }
 
 void RtdeSession::cycle(const RobotState& state) {
-    if (!started_ || cycles_++ % outputs_.every != 0 || peer_.queued() > kMostUnread) {
+    if (!started_ || cycles_++ % outputs_.every != 0 || peer_.queued() > kMostUnreadRtde) {
         return;
     }
     ByteWriter payload;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gripper.hpp"
+#include "metier/base/numbers.hpp"
 #include "metier/base/text.hpp"
 #include "metier/virtual_controller/cycle_timer.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"

@@ -30,7 +30,7 @@ using dashboard::CellServer;
 using dashboard::Dashboard;
 
 // Longest time from the signal to the end of the process.
-constexpr std::chrono::seconds kLongestEnd{10};
+constexpr std::chrono::seconds kLongestPageEnd{10};
 
 struct DashboardOptions {
     ServerChoice servers;
@@ -154,7 +154,7 @@ Result<Exit> runDashboard(const DashboardOptions& options, const CommandContext&
     } else {
         watchDiscovery(*page, options, stop);
     }
-    link::StopSignal::endWithin(kLongestEnd);
+    link::StopSignal::endWithin(kLongestPageEnd);
     return Exit::success;
 }
 

@@ -23,7 +23,7 @@ namespace {
 using client::SkillHandle;
 
 constexpr const char* kType = "PickPlaceSkillType";
-constexpr std::chrono::seconds kLongestReset{5};
+constexpr std::chrono::seconds kLongestPartReset{5};
 
 /// One PickPlaceSkill with the connection that it is used over.
 struct Component {
@@ -241,7 +241,7 @@ Result<Exit> pickAndPlace(const CommandIdentity& identity, const std::vector<std
                           const PickPlaceSettings& settings) {
     METIER_ASSIGN(auto components, findComponents(identity, urls));
     const auto tallies =
-        moveAll(components, settings, [&] { resetAllHalted(identity, urls, kLongestReset); });
+        moveAll(components, settings, [&] { resetAllHalted(identity, urls, kLongestPartReset); });
     fmt::print("{}", settings.json ? jsonOf(components, tallies) : tableOf(components, tallies));
     const bool all_placed = std::all_of(tallies.begin(), tallies.end(), [&](const auto& one) {
         return one.placed == settings.parts;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "metier/base/numbers.hpp"
 #include "servers.hpp"
 #include "side_by_side.hpp"
 #include "squares.hpp"
@@ -20,8 +21,6 @@ struct SquareOutcome {
     Result<SquareResult> result;
 };
 
-constexpr double kMillimetre = 1000.0;
-
 std::string rowOf(const SquareOutcome& outcome) {
     if (!outcome.result) {
         return fmt::format("{:<14} failed: {}\n", outcome.name, outcome.result.error().message);
@@ -29,8 +28,9 @@ std::string rowOf(const SquareOutcome& outcome) {
     const auto& result = *outcome.result;
     const auto& measured = result.path.measurement;
     return fmt::format("{:<14} {:>4} {:>8.2f} {:>14.4f} {:>12.4f} {:>8}\n", outcome.name,
-                       result.laps, result.time.count(), measured.largest_deviation * kMillimetre,
-                       measured.closure_error * kMillimetre, result.missed_cycles);
+                       result.laps, result.time.count(),
+                       measured.largest_deviation * kMillimetresPerMetre,
+                       measured.closure_error * kMillimetresPerMetre, result.missed_cycles);
 }
 
 nlohmann::json jsonOf(const SquareOutcome& outcome) {
@@ -43,9 +43,9 @@ nlohmann::json jsonOf(const SquareOutcome& outcome) {
     const auto& measured = result.path.measurement;
     json["laps"] = result.laps;
     json["time_s"] = result.time.count();
-    json["deviation_mm"] = measured.largest_deviation * kMillimetre;
-    json["reported_deviation_mm"] = result.reported_deviation * kMillimetre;
-    json["closure_mm"] = measured.closure_error * kMillimetre;
+    json["deviation_mm"] = measured.largest_deviation * kMillimetresPerMetre;
+    json["reported_deviation_mm"] = result.reported_deviation * kMillimetresPerMetre;
+    json["closure_mm"] = measured.closure_error * kMillimetresPerMetre;
     json["missed_cycles"] = result.missed_cycles;
     json["samples"] = result.path.positions.size();
     return json;

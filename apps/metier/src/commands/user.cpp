@@ -43,11 +43,11 @@ Result<void> remove(UserTable& users, const UserOptions& options) {
 
 using UserAction = Result<void> (*)(UserTable&, const UserOptions&);
 
-Result<Exit> act(Action action, const UserOptions& options, const server::Security& security) {
+Result<Exit> act(UserAction action, const UserOptions& options, const server::Security& security) {
     METIER_ASSIGN(const auto folder, security.openFolder());
     METIER_ASSIGN(auto users, UserTable::load(folder.usersFile()));
     METIER_TRY(action(users, options));
-    METIER_TRY(action == &list ? Result<void>() : users.save(folder.usersFile()));
+    METIER_TRY(action == &listUsers ? Result<void>() : users.save(folder.usersFile()));
     return Exit::success;
 }
 

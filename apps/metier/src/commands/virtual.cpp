@@ -27,7 +27,7 @@ constexpr std::uint16_t kControlPort = 7400;
 // Longest time that a controller stays for its servers, if all get the signal at the same moment:
 // they brake first.
 constexpr auto kLongestCompany = 3s;
-constexpr auto kLongestEnd = 10s;
+constexpr auto kLongestControllerEnd = 10s;
 
 struct VirtualRunOptions {
     std::string cell;
@@ -67,7 +67,7 @@ Result<Exit> runController(const VirtualRunOptions& options) {
     std::fflush(stdout);
     std::jthread running([&] { host->run(); });
     stop.wait();
-    link::StopSignal::endWithin(kLongestEnd);
+    link::StopSignal::endWithin(kLongestControllerEnd);
     host->stopOnceAlone(kLongestCompany);
     return Exit::success;
 }

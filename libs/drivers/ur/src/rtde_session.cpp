@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kHighestFrequencyCb3 = 125.0;  // [Hz]
 constexpr double kHighestFrequency = 500.0;     // [Hz], since major version 5
-constexpr std::uint32_t kFirstESeries = 5;
+constexpr std::uint32_t kFirstRtdeOfESeries = 5;
 
 }  // namespace
 
@@ -38,7 +38,8 @@ Result<void> RtdeSession::negotiate(const RtdeRequest& request, SteadyTime deadl
     METIER_ASSIGN(const auto version,
                   ask(rtde::request(PackageType::get_controller_version), deadline)
                       .and_then(rtde::parseControllerVersion));
-    const double highest = version.major < kFirstESeries ? kHighestFrequencyCb3 : kHighestFrequency;
+    const double highest =
+        version.major < kFirstRtdeOfESeries ? kHighestFrequencyCb3 : kHighestFrequency;
     if (request.frequency > highest) {
         return fail(Errc::not_supported,
                     fmt::format("software {}.{} gives at most {} Hz, asked for are {} Hz: set "

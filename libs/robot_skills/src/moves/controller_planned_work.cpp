@@ -95,7 +95,7 @@ void ControllerPlannedMove::tellArrived(const MotionOutcome& outcome) {
         tell_.fail(Reason::error,
                    fmt::format("{}: the motion ended in another configuration: an axis is {:.4f} "
                                "rad from its target, limit {} rad",
-                               setup_.robot.arm.info().name, off, kSameJoints));
+                               setup_.robot.arm.info().name, off, kArrivedJoints));
         return;
     }
     setup_.tell(tell_, results(rest_), outcome);
@@ -115,7 +115,7 @@ MoveResults ControllerPlannedMove::results(const device::JointArray& reached) co
 ControllerPlannedWork::ControllerPlannedWork(device::MotionPlanner& planner,
                                              device::ControllerPlannedMotion motion,
                                              ControllerPlannedMove::Setup move)
-    : ArmWork(move.arm, toolPoseOf(move.trajectory)),
+    : ArmWork(move.robot.arm, toolPoseOf(move.trajectory)),
       planner_(planner),
       motion_(std::move(motion)),
       move_(std::make_shared<ControllerPlannedMove>(std::move(move))) {

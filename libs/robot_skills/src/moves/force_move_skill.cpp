@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "metier/base/numbers.hpp"
 #include "metier/motion/force_limit.hpp"
 #include "moves/controller_planned_motion.hpp"
 #include "moves/controller_planned_work.hpp"
@@ -77,8 +77,7 @@ MetForce metForce(const RobotModel& model, const MoveResults& results,
             outcome.end == MotionOutcome::End::force};
 }
 
-constexpr int kSamples = 20;
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr int kForceSamples = 20;
 constexpr double kSameAxis = 1.0 * kDegree;
 
 Eigen::Matrix3d baseFromFlange(const RobotModel& model, const motion::JointVector& joints) {
@@ -111,8 +110,8 @@ Result<device::ForceCondition> flangeCondition(const RobotModel& model,
             continue;
         }
         const int flange = nearestFlangeAxis(at_start, base);
-        for (int i = 0; i <= kSamples; ++i) {
-            const double fraction = static_cast<double>(i) / kSamples;
+        for (int i = 0; i <= kForceSamples; ++i) {
+            const double fraction = static_cast<double>(i) / kForceSamples;
             const auto there = baseFromFlange(model, trajectory.positionAt(fraction));
             if (const double angle = angleBetween(there, base, flange); angle > kSameAxis) {
                 return fail(

@@ -9,6 +9,7 @@
 #include "host/skill_host.hpp"
 #include "kinds/compositions.hpp"
 #include "kinds/kinds.hpp"
+#include "kinds/look_times.hpp"
 #include "kinds/rebinder.hpp"
 #include "metier/client/remote_server.hpp"
 #include "metier/composition/definition.hpp"
@@ -20,7 +21,6 @@ namespace {
 
 using composition::Definition;
 
-constexpr std::chrono::seconds kLongestSearch{20};
 constexpr std::chrono::milliseconds kSearchPause{200};
 
 /// "ptp, line"

@@ -11,6 +11,7 @@
 
 #include "finding/discovered_servers.hpp"
 #include "kinds/kinds.hpp"
+#include "kinds/look_times.hpp"
 #include "kinds/robot_moves.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/server/skill_survey.hpp"

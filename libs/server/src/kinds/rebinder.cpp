@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "kinds/compositions.hpp"
+#include "kinds/look_times.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 
 namespace metier::server {
