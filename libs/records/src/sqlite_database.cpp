@@ -29,6 +29,7 @@ constexpr Dialect kDialect{
 constexpr std::chrono::milliseconds kLongestWrite{2'000};
 constexpr std::chrono::milliseconds kLongestRead{10'000};
 /// Statements that are kept; lists make many that are used once.
+constexpr int kLockPauseMs = 5;
 constexpr std::size_t kMostStatements = 64;
 constexpr mode_t kOwnerOnly = 0600;
 
@@ -198,11 +199,20 @@ Result<void> SqliteDatabase::setUp(Store::Access access) {
     if (access == Store::Access::read) {
         return script("PRAGMA query_only = 1");
     }
-    // The first one works only before the first table; the rest of the space is given back by it.
-    return script(
-        "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
-        "PRAGMA journal_size_limit = 16777216; PRAGMA wal_autocheckpoint = 4096;"
-        "PRAGMA temp_store = MEMORY");
+    // Of two that change a new file to WAL at once SQLite refuses one without waiting.
+    const auto end = std::chrono::steady_clock::now() + kLongestWrite;
+    while (true) {
+        // The first one works only before the first table; the rest of the space is given back by
+        // it.
+        auto done = script(
+            "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL;"
+            "PRAGMA synchronous = FULL; PRAGMA journal_size_limit = 16777216;"
+            "PRAGMA wal_autocheckpoint = 4096; PRAGMA temp_store = MEMORY");
+        if (done || done.error().code != Errc::timeout || std::chrono::steady_clock::now() >= end) {
+            return done;
+        }
+        sqlite3_sleep(kLockPauseMs);
+    }
 }
 
 tl::unexpected<Error> SqliteDatabase::failed() const {
