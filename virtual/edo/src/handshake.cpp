@@ -51,7 +51,7 @@ HandshakeAnswer answerHandshake(std::string_view request) {
     if (head[http::field::sec_websocket_version] != "13") {
         return refused("426 Upgrade Required", "only version 13 of WebSocket is spoken\n");
     }
-    const auto key = head[http::field::sec_websocket_key].to_string();
+    const std::string key(head[http::field::sec_websocket_key]);
     if (const auto nonce = fromBase64(key); !nonce || nonce->size() != kNonceSize) {
         return refused("400 Bad Request", "Sec-WebSocket-Key is not 16 bytes in base64\n");
     }
