@@ -229,8 +229,10 @@ Result<void> PostgresDatabase::begin() {
 }
 
 Result<void> PostgresDatabase::beginReading() {
-    using Snapshot = pqxx::transaction<pqxx::repeatable_read, pqxx::read_only>;
-    return guarded([&] { transaction_ = std::make_unique<Snapshot>(connection_); });
+    return guarded([&] {
+        transaction_ = std::make_unique<pqxx::work>(connection_);
+        transaction_->exec("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY");
+    });
 }
 
 Result<void> PostgresDatabase::commit() {
