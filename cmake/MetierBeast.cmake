@@ -1,7 +1,7 @@
 # metier::beast: Boost.Beast, header-only, for HTTP messages and WebSockets. All that link it agree on
 # Boost.Asio's memory: without the definition that of pending operations would come from
-# std::aligned_alloc. A source file with it is left out of unity builds (SKIP_UNITY_BUILD_INCLUSION):
-# Boost.Asio and Asio cannot be in one.
+# std::aligned_alloc. A source file that includes it needs SKIP_UNITY_BUILD_INCLUSION: Boost.Asio
+# and Asio cannot be in one unity source.
 
 find_path(METIER_BOOST_INCLUDE boost/beast/websocket.hpp REQUIRED)
 add_library(metier_beast INTERFACE)

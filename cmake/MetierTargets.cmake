@@ -7,7 +7,7 @@ target_compile_options(metier_warnings INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor
     -Woverloaded-virtual -Werror>)
 
-# In a unity build each file is a part of another one, where g++ warns of members whose types are in
+# A unity build includes source files in another one; there g++ warns of members whose types are in
 # an anonymous namespace.
 if(CMAKE_UNITY_BUILD)
     target_compile_options(metier_warnings INTERFACE

@@ -24,7 +24,7 @@ enum class Exit : int {
 Exit report(const Error& error);
 /// The exit status of a command; reports the error of one that failed.
 Exit exitOf(const Result<Exit>& ended);
-/// Has an error be one of the command line, or of a file that it names: its exit status is `usage`.
+/// Turns an error into one of the command line or of a file that it names: exit status `usage`.
 template <typename T>
 Result<T> asUsage(Result<T> result) {
     return std::move(result).map_error([](Error error) {
@@ -34,7 +34,7 @@ Result<T> asUsage(Result<T> result) {
 /// Writes a file. Errors: invalid_argument if it cannot be written.
 Result<void> writeFile(const std::string& file, const std::string& text);
 
-/// Has an option refuse values outside of [low, high], and show its default in the help.
+/// Limits an option to [low, high]; the help shows its default.
 template <typename T>
 void within(CLI::Option* option, T low, T high) {
     option->check(CLI::Range(low, high))->capture_default_str();

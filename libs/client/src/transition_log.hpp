@@ -70,7 +70,7 @@ opcua::Answer<opcua::Subscription> watchStopping(
     opcua::Client& client, const opcua::NodeId& skill,
     std::function<void(const skill::StoppingEvent&)> on_stopping);
 
-/// Has the transitions of a skill added to the log.
+/// Subscribes to the transitions of a skill; each is added to the log.
 /// Errors: the server's.
 opcua::Answer<opcua::Subscription> watchTransitions(opcua::Client& client,
                                                     const opcua::NodeId& skill,

@@ -199,11 +199,10 @@ Result<void> SqliteDatabase::setUp(Store::Access access) {
     if (access == Store::Access::read) {
         return script("PRAGMA query_only = 1");
     }
-    // Of two that change a new file to WAL at once SQLite refuses one without waiting.
+    // If two connections change a new file to WAL at once, SQLite refuses one without waiting.
     const auto end = std::chrono::steady_clock::now() + kLongestWrite;
     while (true) {
-        // The first one works only before the first table; the rest of the space is given back by
-        // it.
+        // auto_vacuum takes effect only before the first table; it lets space be given back.
         auto done = script(
             "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL;"
             "PRAGMA synchronous = FULL; PRAGMA journal_size_limit = 16777216;"

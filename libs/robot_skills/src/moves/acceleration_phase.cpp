@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "metier/base/numbers.hpp"
 #include "moves/controller_planned_motion.hpp"
 
 namespace metier::robot_skills {
@@ -46,7 +46,7 @@ device::JointArray AccelerationPhase::take(const device::ArmState& state, double
         return most;
     }
     double speed = 0.0;
-    double acceleration = std::numeric_limits<double>::infinity();
+    double acceleration = kInfinity;
     double jerk = acceleration;
     for (std::size_t axis = 0; axis < most.size(); ++axis) {
         speed += state.velocity[axis] * way[axis] / square;
