@@ -20,6 +20,25 @@ using ::testing::HasSubstr;
 
 constexpr auto kLimit = 250ms;
 
+/// The executor of a bench, which announces what the watchdog posts.
+class AnnouncingExecutor : public skill::Executor {
+public:
+    AnnouncingExecutor(std::shared_ptr<skill::Executor> bench, std::function<void()> posted)
+        : bench_(std::move(bench)), posted_(std::move(posted)) {}
+
+    void post(std::function<void()> work) override {
+        bench_->post(std::move(work));
+        posted_();
+    }
+    skill::Timer after(std::chrono::nanoseconds delay, std::function<void()> work) override {
+        return bench_->after(delay, std::move(work));
+    }
+
+private:
+    std::shared_ptr<skill::Executor> bench_;
+    std::function<void()> posted_;
+};
+
 /// Watches the arm of a bench. The owner's thread is the test: it stalls when the time moves on
 /// without it. The watchdog's thread is a real one, which reads this clock.
 class Watched {
@@ -34,9 +53,11 @@ public:
                                              [this](const std::string& told) {
                                                  ++lines;
                                                  line = told;
-                                                 noticed();
+                                                 noticed_ = true;
                                              }},
-                       bench_.sharedExecutor(), programs(), clock_);
+                       std::make_shared<AnnouncingExecutor>(bench_.sharedExecutor(),
+                                                            [this] { posted(); }),
+                       programs(), clock_);
     }
 
     /// The watch lets go on the owner's thread.
@@ -89,9 +110,9 @@ private:
     std::vector<skill::Program*> programs() {
         return {&bench_.program(kJointPtp), &bench_.program(kPositionStream)};
     }
-    /// The last that the watchdog does: the arm is stopped and the owner's thread has work by then.
-    void noticed() {
-        if (!noticed_.exchange(true)) {
+    /// The last that the watchdog does in a stall: the arm is stopped and the stall logged by then.
+    void posted() {
+        if (noticed_.exchange(false)) {
             stopped_.set_value();
         }
     }
