@@ -107,6 +107,8 @@ function(metier_add_test name)
     add_executable(${name} ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gmock_main metier::warnings)
     target_include_directories(${name} PRIVATE src)
+    # Fixtures of two files may have one name.
+    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
     metier_use_precompiled_headers(${name} REUSE_FROM metier_test_headers)
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
         PROPERTIES TIMEOUT ${arg_TIMEOUT} RUN_SERIAL ${arg_ALONE} LABELS "${arg_LABELS}")
