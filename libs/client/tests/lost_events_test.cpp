@@ -48,6 +48,7 @@ protected:
     ~LostEvents() override {
         used_.reset();
         connection_.reset();
+        executor_->run();  // what is left over, so that it does not keep the executor
     }
     static opcua::ServerLimits shortQueues() {
         opcua::ServerLimits limits;

@@ -51,6 +51,11 @@ protected:
                       .value();
         used_ = use("here.Test");
     }
+    ~RemoteUsedSkillTest() override {
+        used_.reset();
+        remote_.reset();
+        executor_->run();  // what is left over, so that it does not keep the executor
+    }
 
     static skill::SkillDescription description() {
         auto description = opcua_skill::testing::jointMoveDescription();
@@ -435,6 +440,7 @@ TEST_F(LoggedRemoteUsedSkill, TellsOnceThatItsServerIsAway) {
 TEST_F(LoggedRemoteUsedSkill, TellsALossOnceThatIsHeardOfInTwoWays) {
     Connection connection({.url = server().endpointUrl(), .name = "other", .retry_interval = 10ms},
                           connect("component"));
+    used_.reset();
     remote_.reset();
     shutDown();
     ASSERT_TRUE(log_->await("connecting again", 1));
