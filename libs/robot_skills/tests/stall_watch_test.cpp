@@ -46,18 +46,18 @@ public:
     explicit Watched(Bench& bench) : Watched(bench, [&bench] { bench.arm().stop(); }) {}
     Watched(Bench& bench, std::function<void()> stop) : bench_(bench) {
         clock_.advance(1s);
-        watch_.emplace(StallWatch::Setup{.name = "ur5",
-                                         .limit = kLimit,
-                                         .stop = std::move(stop),
-                                         .log =
-                                             [this](const std::string& told) {
-                                                 ++lines;
-                                                 line = told;
-                                                 noticed_ = true;
-                                             }},
-                       std::make_shared<AnnouncingExecutor>(bench_.sharedExecutor(),
-                                                            [this] { posted(); }),
-                       programs(), clock_);
+        watch_.emplace(
+            StallWatch::Setup{.name = "ur5",
+                              .limit = kLimit,
+                              .stop = std::move(stop),
+                              .log =
+                                  [this](const std::string& told) {
+                                      ++lines;
+                                      line = told;
+                                      noticed_ = true;
+                                  }},
+            std::make_shared<AnnouncingExecutor>(bench_.sharedExecutor(), [this] { posted(); }),
+            programs(), clock_);
     }
 
     /// The watch lets go on the owner's thread.
