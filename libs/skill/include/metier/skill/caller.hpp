@@ -9,10 +9,13 @@ namespace metier::skill {
 struct Caller {
     /// Id of its OPC UA session, as text; unique while the session lasts.
     std::string session_id{};
-    std::string client_name{};  ///< application name that the client gave
-    std::string user_name{};    ///< empty: anonymous
-    std::string thumbprint{};   ///< SHA-1 of its application's certificate, hexadecimal; empty: no
-                                ///< certificate
+    /// Application name that the client gave; nobody checked it. Shown in refusals and records.
+    std::string client_name{};
+    /// Name of the user whose password or certificate the server has checked; empty: anonymous.
+    std::string user_name{};
+    /// SHA-1 of its application's certificate, hexadecimal; empty: a connection without
+    /// certificate.
+    std::string thumbprint{};
     /// A skill of this server that runs others. Its rights were checked at its own Start, so they
     /// are not checked again.
     bool of_this_server = false;

@@ -30,9 +30,11 @@ namespace metier::skill {
 /// Threading: the owner's thread, which all its Programs share.
 class Control {
 public:
+    /// Lease that acquire() gives when it is asked for 0.
     static constexpr std::chrono::milliseconds kDefaultLease{1'000};
+    /// Shortest lease that acquire() accepts: a client must be able to renew it in time.
     static constexpr std::chrono::milliseconds kShortestLease{100};
-    /// Limits of a lease: default, shortest and longest.
+    /// Longest lease that acquire() accepts: one hour.
     static constexpr std::chrono::milliseconds kLongestLease{3'600'000};
     /// Time after which a lock ends if it is not renewed.
     static constexpr std::chrono::milliseconds kLockTime{60'000};
@@ -44,55 +46,71 @@ public:
         /// \param session id of the session that held the lease
         /// \param action  as given to acquire(); skill_default leaves it to each skill
         /// \param text    reason, for a person at the client
+        /// May not attach or detach a listener, nor destroy the Control.
         virtual void onControlLost(std::string_view session, OwnerLossAction action,
                                    const std::string& text) = 0;
     };
 
-    /// \param clock must outlive this
+    /// \param executor runs the timers of lease and lock; calls of this class come from its thread
+    /// \param clock    measures lease and lock; must outlive this
     Control(std::shared_ptr<Executor> executor, const Clock& clock);
     Control(const Control&) = delete;
     Control& operator=(const Control&) = delete;
 
-    /// `listener` must be detached before its life ends.
+    /// Adds a listener, which must be detached before its life ends. Listeners are called in the
+    /// order of their attach().
     void attach(Listener& listener);
+    /// Ends the calls to a listener; nothing happens if it was not attached.
     void detach(Listener& listener);
 
-    /// Takes the lease, or begins a new one if the caller holds it already.
-    /// \param lease time until it ends without a heartbeat; 0: kDefaultLease
-    /// \return the epoch, which names this time of control; never 0, unique across restarts
-    /// Errors: locked; out_of_range (lease).
+    /// Takes the lease, or begins a new one with a new epoch if the caller holds it already. A
+    /// session whose lease ran out may command again.
+    /// \param lease  time until it ends without a heartbeat, kShortestLease to kLongestLease; 0:
+    ///               kDefaultLease
+    /// \param action for the executions of this session when the lease is lost, unless their start
+    ///               says otherwise
+    /// \return the epoch, which names this time of control; random and never 0, so that no epoch is
+    /// given out again after a restart
+    /// Errors: locked (another session holds the lease or the lock); out_of_range (lease).
     Result<std::uint64_t> acquire(const Caller& caller, std::chrono::milliseconds lease,
                                   OwnerLossAction action);
-    /// Begins the lease anew.
+    /// Begins the lease anew, with the length that acquire() was given.
     /// Errors: locked, if the caller does not hold this epoch any more, or never did.
     Result<void> heartbeat(const Caller& caller, std::uint64_t epoch);
-    /// Gives the lease back; nothing is stopped.
+    /// Gives the lease back. Nothing is stopped, and no listener is called.
     /// Errors: as heartbeat().
     Result<void> release(const Caller& caller, std::uint64_t epoch);
 
-    /// Takes the lock for kLockTime.
-    /// Errors: locked.
+    /// Takes the lock for kLockTime, or begins that time anew if the caller holds it. A session
+    /// whose lease ran out may command again.
+    /// Errors: locked (another session holds the lease or the lock).
     Result<void> lock(const Caller& caller);
+    /// Begins the lock's time anew.
     /// Errors: invalid_state, if the caller does not hold the lock.
     Result<void> renewLock(const Caller& caller);
     /// Gives the lock back.
     /// Errors: invalid_state, if the caller does not hold the lock.
     Result<void> unlock(const Caller& caller);
-    /// Takes the lock from its holder; a lease stays.
+    /// Takes the lock from its holder; a lease stays. The caller's right to do so is checked
+    /// elsewhere.
     /// Errors: invalid_state, if nobody holds it.
     Result<void> breakLock();
 
-    /// Checks that the caller may command.
+    /// Checks that the caller may command. A skill of this server (Caller::of_this_server) always
+    /// may.
     /// Errors: locked, with the name of the holder, or because the caller's own lease ran out.
     Result<void> checkCommand(const Caller& caller) const;
-    /// Checks that the caller may command and holds this epoch; 0: no epoch is needed.
+    /// Checks that the caller may command and holds the lease of this epoch; 0: no epoch is needed,
+    /// as checkCommand().
     /// Errors: locked.
     Result<void> checkEpoch(const Caller& caller, std::uint64_t epoch) const;
 
-    /// The session has ended, and its lock and lease with it.
+    /// Ends lock and lease of a session that has ended. If it held the lease, the listeners are
+    /// notified before this returns.
     void sessionClosed(std::string_view session_id);
 
-    /// Holder of the lease, or else of the lock; empty session id: there is none.
+    /// Holder of the lease, or else of the lock; empty session id: there is none. The reference
+    /// stays valid, its content changes with the holder.
     const Caller& holder() const noexcept;
     /// Epoch of the present lease, or else of the last one; 0 before the first.
     std::uint64_t epoch() const noexcept { return epoch_; }
@@ -100,27 +118,37 @@ public:
     bool leasedBy(std::string_view session_id) const noexcept;
     /// Time until the lease ends without a heartbeat; 0 if there is no lease.
     std::chrono::nanoseconds leaseRemaining() const noexcept;
-    /// Number of leases that ended without being given back. Threads: any.
+    /// Number of leases that ran out or ended with their session, since this was made. Threads:
+    /// any.
     std::uint64_t losses() const noexcept { return losses_.load(std::memory_order_relaxed); }
+    /// Whether a session holds the lock.
     bool isLocked() const noexcept { return locked_; }
+    /// Holder of the lock; empty session id: there is none.
     const Caller& locker() const noexcept { return locker_; }
     /// Time until the lock ends without a renewal; 0 if there is no lock.
     std::chrono::nanoseconds lockRemaining() const noexcept;
 
 private:
-    /// Checks that nobody but the caller holds control.
+    /// Checks that no session but the caller's holds lease or lock.
     Result<void> checkFree(const Caller& caller) const;
+    /// Checks that the caller holds the lease of this epoch. Errors: locked.
     Result<void> checkHolds(const Caller& caller, std::uint64_t epoch) const;
+    /// Sets the timer to the end of the lease.
     void armLease();
+    /// Ends the lease if its time is over; a heartbeat may have moved the end meanwhile.
     void leaseDue();
+    /// Ends the lease and notifies the listeners.
     void lose(const std::string& text);
+    /// Ends the lease without a word to the listeners.
     void endLease();
+    /// Sets the timer to the end of the lock.
     void armLock();
     void endLock();
 
     // Shared by the Programs of its thread.
     std::shared_ptr<Executor> executor_;
     const Clock& clock_;
+    // Not owned; in the order of attach().
     std::vector<Listener*> listeners_;
 
     std::atomic<std::uint64_t> losses_{0};

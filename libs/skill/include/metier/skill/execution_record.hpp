@@ -18,17 +18,27 @@ namespace metier::skill {
 
 /// Facts that a server keeps of one execution.
 struct ExecutionRecord {
-    std::string id{};          ///< ExecutionId, given by the client or the Program
-    Caller client{};           ///< client that started it
-    ParentExecution parent{};  ///< execution on whose behalf it was started
+    /// ExecutionId, given by the client, or made by the Program as its random prefix and a number.
+    std::string id{};
+    /// Client that started it, as its session was then.
+    Caller client{};
+    /// Execution on whose behalf it was started, as the starter claims; empty: none.
+    ParentExecution parent{};
     /// Parameters at Start. Shared with the recorder; does not change.
     std::shared_ptr<const ValueMap> parameters{};
-    State state = State::running;  ///< present state, or the state in which it ended
-    Reason reason = Reason::none;  ///< reason of the latest transition
-    std::string reason_text{};     ///< for a person, with value, limit and unit; may be empty
+    /// Present state, or the state in which it ended: ready (finished, or reset while suspended) or
+    /// halted.
+    State state = State::running;
+    /// Reason of its latest transition; by_client from its Start on.
+    Reason reason = Reason::none;
+    /// Text for a person, with value, limit and unit; may be empty.
+    std::string reason_text{};
+    /// Wall clock of the server at the Start.
     UtcTime start_time{};
-    UtcTime end_time{};  ///< UtcTime{} while it is not over
-    ValueMap result{};   ///< empty unless it finished
+    /// Wall clock at the transition that ended it; UtcTime{} while it is not over.
+    UtcTime end_time{};
+    /// Values by the names of the declared results; empty unless it finished.
+    ValueMap result{};
 };
 
 /// The last kMost executions of one Program; older ones are forgotten.
@@ -36,6 +46,7 @@ struct ExecutionRecord {
 /// Threading: the owner's thread.
 class ExecutionHistory {
 public:
+    /// Number of executions that are remembered per Program.
     static constexpr std::size_t kMost = 64;
 
     /// The record of that id, or nullptr. Valid until the next add().
@@ -59,6 +70,7 @@ public:
     }
 
 private:
+    // At most kMost, in the order of their Start.
     std::deque<ExecutionRecord> records_;  // oldest first
 };
 

@@ -6,14 +6,17 @@
 
 namespace metier::skill {
 
-/// A piece of work that will run later; destroying the Timer cancels it.
+/// A piece of work that will run later; destroying the Timer cancels it, so keep it as a member of
+/// the object that the work uses.
 ///
 /// Threading: the owner's thread.
 class Timer {
 public:
+    /// A Timer without work: cancel() does nothing.
     Timer() = default;
     /// \param cancel called at most once, may be called while the work itself runs
     explicit Timer(std::function<void()> cancel) : cancel_(std::move(cancel)) {}
+    /// Cancels the work, unless it has begun.
     ~Timer() { cancel(); }
     Timer(Timer&& other) noexcept : cancel_(std::exchange(other.cancel_, nullptr)) {}
     Timer& operator=(Timer&& other) noexcept {
@@ -45,9 +48,12 @@ class Executor {
 public:
     virtual ~Executor() = default;
     /// Runs `work` on the owner's thread, after all work posted before, never inside this call.
-    /// Threads: any; does not wait.
+    /// \param work must not block; dropped unrun if the owner's thread has ended
+    /// Threads: any, but no cycle thread: it allocates and may lock. Does not wait.
     virtual void post(std::function<void()> work) = 0;
     /// Runs `work` on the owner's thread once `delay` has passed and the Timer still exists.
+    /// \param delay by the monotonic clock; 0 or less: as soon as possible, not inside this call
+    /// \param work  must not block; may destroy its own Timer
     /// Threads: the owner's.
     [[nodiscard]] virtual Timer after(std::chrono::nanoseconds delay,
                                       std::function<void()> work) = 0;

@@ -19,15 +19,19 @@
 
 namespace metier::skill {
 
-/// A unit of measure.
+/// A unit of measure, as OPC UA's EngineeringUnits show it to clients (OPC 10000-8).
 struct Unit {
-    std::string_view symbol;  ///< as printed behind a number: "m/s"
-    std::string_view name;    ///< "metre per second"
-    std::string_view code;    ///< UNECE Recommendation 20 common code: "MTS"
+    /// Symbol as printed behind a number: "m/s".
+    std::string_view symbol;
+    /// Name in words: "metre per second".
+    std::string_view name;
+    /// Common code of UNECE Recommendation 20: "MTS".
+    std::string_view code;
     bool operator==(const Unit&) const = default;
 };
 
-inline constexpr Unit kOne{"", "one", "C62"};  ///< a number without unit
+/// A number without unit; the default of a field.
+inline constexpr Unit kOne{"", "one", "C62"};
 inline constexpr Unit kMetre{"m", "metre", "MTR"};
 inline constexpr Unit kRadian{"rad", "radian", "C81"};
 inline constexpr Unit kSecond{"s", "second", "SEC"};
@@ -52,50 +56,74 @@ inline constexpr std::array kUnits{kOne,
                                    kRadianPerSecondSquared,
                                    kKilogram};
 
-/// Place of a field below the skill's node.
+/// Place of a field below the skill's node; it decides where clients look for the Variable.
 enum class Place : std::uint8_t {
-    parameter_set,  ///< a parameter that published clients know
-    options,        ///< a parameter that they do not know
+    /// A parameter of the published skill model, below ParameterSet.
+    parameter_set,
+    /// A parameter that metier has added, below Options: published clients do not know it.
+    options,
+    /// A result, below FinalResultData.
     final_result,
 };
 
 /// Time at which the value of a parameter is taken.
 enum class Input : std::uint8_t {
-    snapshot,  ///< once, at Start
-    live,      ///< at Start, and every write while Running goes to the work
+    /// Taken once, at Start. A write while Running is refused with invalid_state.
+    snapshot,
+    /// Taken at Start, and every write while Running goes to ExecutionWork::input().
+    live,
 };
 
 /// Number of elements that a list, or of characters that a text, may have.
 struct LengthLimit {
-    std::size_t least = 0;                                       ///< smallest number, included
-    std::size_t most = std::numeric_limits<std::size_t>::max();  ///< largest number, included
+    /// Smallest number, included.
+    std::size_t least = 0;
+    /// Largest number, included; the default is no limit.
+    std::size_t most = std::numeric_limits<std::size_t>::max();
 };
 
 /// Description of one parameter or result of a skill: its name and the values that it may hold.
+/// Usually declared by FieldList::add().
 struct Field {
-    std::string name{};                   ///< BrowseName, unique within the skill
-    std::string description{};            ///< one line for a person
-    ValueType type = ValueType::null;     ///< FieldList::add() fills it from the member
-    Unit unit = kOne;                     ///< unit of every number of the value
-    std::optional<Range> range{};         ///< bounds every number of the value; not for frames
-    std::optional<LengthLimit> length{};  ///< for lists and texts
-    Value default_value{};                ///< used where the value is Null; Null: there is none
-    bool optional = false;                ///< false: a parameter without default must be given
+    /// BrowseName of its Variable, unique within the parameters and within the results of a skill.
+    std::string name{};
+    /// One line for a person.
+    std::string description{};
+    /// Type that a value must have; FieldList::add() fills it from the member.
+    ValueType type = ValueType::null;
+    /// Unit of every number of the value; the parts of a frame have [m] and [rad] of their own.
+    Unit unit = kOne;
+    /// Bounds every number of the value, both ends included; frames are only checked to be finite.
+    /// None: any finite number.
+    std::optional<Range> range{};
+    /// Bounds the number of elements of a list, or of bytes of a text. None: any length.
+    std::optional<LengthLimit> length{};
+    /// Value that Null stands for; Null: there is none.
+    Value default_value{};
+    /// Whether the value may stay Null; false: a parameter without default must be given.
+    bool optional = false;
+    /// Place of the Variable; results of a TypedSkill get final_result.
     Place place = Place::parameter_set;
+    /// Time at which a written value takes effect.
     Input input = Input::snapshot;
     std::function<Result<void>(const Value&)>
-        extra_check{};  ///< after the checks above, never Null
+        /// Further check, called after those above and never with Null; called on the owner's
+        /// thread, must not block. Its error text gets the field's name put in front.
+        extra_check{};
 };
 
 /// An ordered list of fields. Copies share the list, so that ten thousand skills of one type need
 /// it only once.
 ///
-/// Threading: as std::shared_ptr; the fields themselves do not change.
+/// Threading: as std::shared_ptr: different copies may be used on different threads; the fields
+/// themselves do not change.
 class Fields {
 public:
     using const_iterator = std::vector<Field>::const_iterator;
 
+    /// An empty list.
     Fields() = default;
+    /// A list in the given order; names are not compared here, a Program refuses doubles.
     Fields(std::initializer_list<Field> fields) : Fields(std::vector<Field>(fields)) {}
     Fields(std::vector<Field> fields)  // NOLINT: implicit, as a list of fields is meant
         : fields_(std::make_shared<const std::vector<Field>>(std::move(fields))) {}
@@ -104,10 +132,12 @@ public:
     const_iterator end() const noexcept { return fields_->end(); }
     std::size_t size() const noexcept { return fields_->size(); }
     bool empty() const noexcept { return fields_->empty(); }
+    /// The field at that place, counted from 0; `index` must be less than size(), which is not
+    /// checked.
     const Field& operator[](std::size_t index) const noexcept { return (*fields_)[index]; }
     /// A copy that may be changed.
     std::vector<Field> toVector() const { return *fields_; }
-    /// Changes this copy alone.
+    /// Appends a field to this copy alone; copies the whole list.
     void push_back(Field field) {
         auto fields = toVector();
         fields.push_back(std::move(field));
@@ -121,6 +151,10 @@ private:
 
 /// The field of that name in a list of fields, or nullptr.
 template <typename List>
+/// The field of that name in a list of fields, or nullptr. Valid as long as the list is not
+/// changed.
+/// \param name compared with upper and lower case
+/// Threads: any; pure.
 const Field* findField(const List& fields, std::string_view name) noexcept {
     const auto found = std::find_if(fields.begin(), fields.end(),
                                     [&](const Field& field) { return field.name == name; });
@@ -128,13 +162,15 @@ const Field* findField(const List& fields, std::string_view name) noexcept {
 }
 
 /// Checks that `value` may be written to `field`. Null always may: it means the default.
-/// Errors:  type_mismatch; out_of_range (not finite, out of range, wrong length), with value, limit
-/// and unit; any error of extra_check. The text begins with the field's name.
+/// Errors: type_mismatch; out_of_range (not finite, out of range, wrong length, a range whose low
+///         is over its high), with value, limit and unit; any error of extra_check. The text begins
+///         with the field's name.
 /// Threads: any, if extra_check is pure.
 Result<void> checkValue(const Field& field, const Value& value);
 
-/// Returns `value`, or the field's default if `value` is Null.
+/// Returns `value`, or the field's default if `value` is Null. Neither is checked.
 /// Errors: invalid_argument if both are Null and the field is not optional.
+/// Threads: any; pure.
 Result<Value> valueOrDefault(const Field& field, const Value& value);
 
 }  // namespace metier::skill

@@ -14,6 +14,7 @@ namespace metier::skill {
 namespace detail {
 
 template <typename T>
+/// Type of a member without its std::optional, and whether it had one.
 struct StripOptional {
     using Type = T;
     static constexpr bool kOptional = false;
@@ -37,6 +38,11 @@ class FieldList {
 public:
     /// Declares the next field; its type follows from the member.
     template <typename Member>
+    /// Declares the next field.
+    /// \param member must be of one of Value's types, or std::optional of one; else it does not
+    ///               compile
+    /// \param field  type and optional are overwritten: they follow from the member
+    /// \return this list, for the next add()
     FieldList& add(Member T::*member, Field field) {
         using Plain = typename detail::StripOptional<Member>::Type;
         field.type = typeOf(Value(std::in_place_type<Plain>));
@@ -49,10 +55,12 @@ public:
         return *this;
     }
 
+    /// All declared fields, in the order of add(). Valid until the next add().
     const std::vector<Field>& fields() const noexcept { return fields_; }
 
     /// Makes the struct from `values`. A name that is missing, or Null, means the default; names
-    /// that are not declared are ignored.
+    /// that are not declared are ignored. A member whose value stays Null keeps the struct's own
+    /// initial value.
     /// Errors: as checkValue(); invalid_argument if a value without default is missing.
     Result<T> read(const ValueMap& values) const {
         T target{};
@@ -68,7 +76,7 @@ public:
         return target;
     }
 
-    /// Returns the members by name; an empty optional gives Null.
+    /// Returns the members by name, without checks; an empty optional gives Null.
     ValueMap write(const T& source) const {
         ValueMap values;
         for (std::size_t i = 0; i < fields_.size(); ++i) {

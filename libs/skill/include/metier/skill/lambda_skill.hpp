@@ -8,27 +8,43 @@
 namespace metier::skill {
 
 /// The functions of a LambdaSkill. Each is called on the owner's thread and must not block. A
-/// function may be left out; its comment says what happens then.
+/// function may be left out; its comment says what happens then. An error, or an exception, has the
+/// effect that Skill and ExecutionWork state for it.
+///
+/// The handle that a function gets belongs to the execution under way; keep a copy to report later,
+/// from any thread.
 struct SkillFunctions {
-    /// Makes further checks at Start. Left out: none.
+    /// Makes further checks at Start, on values whose types and ranges are checked already. Left
+    /// out: none. Errors: refuse the Start, or are the reason in the answer of Check.
     std::function<Result<void>(const ValueMap& parameters)> check{};
-    /// Begins the work. Left out: the work is finished at once.
+    /// Begins the work; report its end by ExecutionHandle::finish() or fail(). Left out: the work
+    /// is finished at once.
     std::function<void(const ValueMap& parameters, const ExecutionHandle&)> start{};
-    /// Suspend and resume the work. If one of them is left out, the skill cannot be suspended.
+    /// Asks the work to come to rest; answer by ExecutionHandle::atRest(). If this or `resume` is
+    /// left out, the skill cannot be suspended.
     std::function<Result<void>(const ExecutionHandle&)> suspend{};
+    /// Continues the work from rest. Errors: the Program stays Suspended.
     std::function<Result<void>(const ExecutionHandle&)> resume{};
-    /// Brakes. Left out: the work counts as at rest at once.
+    /// Brakes; answer by ExecutionHandle::atRest(). Left out: the work counts as at rest at once.
     std::function<void(const ExecutionHandle&)> halt{};
-    /// Stops by the device's own stop. Left out: nothing is done.
+    /// Stops by the device's own stop; must not throw. Left out: nothing is done.
     std::function<void()> force_stop{};
-    /// Clears a fault. Left out: every fault counts as gone.
+    /// Clears a fault. Left out: every fault counts as gone. Errors: the Program stays Halted and
+    /// shows the text.
     std::function<Result<void>()> reset{};
 };
 
-/// A skill made of functions.
+/// A skill made of functions, for skills without state of their own:
+///
+///     LambdaSkill({.name = "WaveSkill", .type = "WaveSkillType"},
+///                 {.start = [&](const ValueMap&, const ExecutionHandle& on) { hand.begin(on); },
+///                  .halt = [&](const ExecutionHandle& on) { hand.stop(); on.atRest(); }});
+///
+/// The work refers to the functions of this skill, so it must not outlive it. Threading: as Skill.
 class LambdaSkill final : public Skill {
 public:
-    /// description.suspendable is overwritten: true if both suspend and resume are given.
+    /// \param description its `suspendable` is overwritten: true if both suspend and resume are
+    ///                    given
     LambdaSkill(SkillDescription description, SkillFunctions functions);
 
     const SkillDescription& description() const override { return description_; }

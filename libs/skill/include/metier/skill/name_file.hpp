@@ -13,10 +13,11 @@ class NameFile {
 public:
     virtual ~NameFile() = default;
     /// Appends one line.
+    /// \param line with its line end
     /// Errors: resource_unavailable; then nothing of the line is in the file.
     virtual Result<void> append(const std::string& line) = 0;
     /// Moves all lines to the older file, whose former lines are dropped, and begins an empty file.
-    /// Errors: resource_unavailable.
+    /// Errors: resource_unavailable. May be called again then.
     virtual Result<void> beginAnew() = 0;
 };
 

@@ -9,6 +9,7 @@
 namespace metier::skill {
 
 /// A device that only one Program may use at a time: from its Start until it is Ready or Halted.
+/// Give the same one to the ProgramOptions of all skills of the device.
 ///
 /// Threading: the owner's thread, which all its Programs share.
 class Resource {
@@ -18,8 +19,9 @@ public:
     Resource(const Resource&) = delete;
     Resource& operator=(const Resource&) = delete;
 
+    /// Name of the device, as in refusals.
     const std::string& name() const noexcept { return name_; }
-    /// Name of the holder; empty if nobody holds it.
+    /// BrowseName of the skill that holds it; empty if none does.
     const std::string& holder() const noexcept { return holder_; }
 
     /// Checks that nobody holds it.
@@ -29,12 +31,14 @@ public:
                                : fail(Errc::resource_unavailable,
                                       fmt::format("{} is in use by {}", name_, holder_));
     }
+    /// Takes the device for the skill of that BrowseName.
     /// Errors: resource_unavailable if it is held, even by `holder` itself.
     Result<void> acquire(std::string_view holder) {
         METIER_TRY(checkFree());
         holder_ = holder;
         return {};
     }
+    /// Frees the device, whoever holds it; nothing happens if it is free.
     void release() noexcept { holder_.clear(); }
 
 private:

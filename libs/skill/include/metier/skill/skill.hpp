@@ -17,36 +17,55 @@ namespace metier::skill {
 
 /// Facts that clients may know of a skill before they use it. Does not change.
 struct SkillDescription {
-    std::string name{};         ///< BrowseName of the instance: "CartesianPtpMoveSkill"
-    std::string type{};         ///< BrowseName of its type: "CartesianPtpMoveSkillType"
-    std::string description{};  ///< one line for a person
+    /// BrowseName of the instance, unique among the skills of a controller:
+    /// "CartesianPtpMoveSkill".
+    std::string name{};
+    /// BrowseName of its type: "CartesianPtpMoveSkillType".
+    std::string type{};
+    /// One line for a person.
+    std::string description{};
+    /// Values that a client may give; a value that a skill needs has no default and is not
+    /// optional.
     Fields parameters{};
+    /// Values of a finished execution; one that the work leaves out is Null.
     Fields results{};
-    std::vector<std::string> steps{};  ///< names of a sequence's steps, in order
-    bool suspendable = true;           ///< false: Suspend is refused with not_supported
-    /// Action when the owner of an execution is gone, unless the Start says otherwise. Skills that
-    /// move an arm halt.
+    /// Names of a sequence's steps, in order; empty: it has none.
+    std::vector<std::string> steps{};
+    /// Whether the work can be suspended; false: Suspend is refused with not_supported.
+    bool suspendable = true;
+    /// Action when the owner of an execution is gone, unless the Start or the lease says otherwise.
+    /// Skills that move an arm halt.
     OwnerLossAction on_owner_loss = OwnerLossAction::keep_going;
 };
 
 /// Answer of Check: whether Start would succeed, and the motion that it would make.
 struct CheckReport {
-    bool possible = true;                 ///< whether Start would succeed now
-    std::string reason{};                 ///< if not possible: why, with value, limit and unit
-    double first_failing_fraction = 1.0;  ///< fraction of the path, 0 to 1; 1 if nothing fails
-    double planned_duration = 0.0;        ///< [s]; 0 if the skill does not know it
-    /// Longest stop that a Halt could need at any time of the motion: time until the set-points
-    /// stand [s], and way of the tool frame meanwhile [m]. 0 if the skill does not know them.
+    /// Whether Start would succeed now.
+    bool possible = true;
+    /// Reason why it is not possible, with value, limit and unit; empty if it is.
+    std::string reason{};
+    /// Fraction of the path up to the first place that fails, 0 to 1; 1 if nothing fails, 0 if the
+    /// values themselves are refused.
+    double first_failing_fraction = 1.0;
+    /// Duration of the motion [s]; 0 if the skill does not know it.
+    double planned_duration = 0.0;
+    /// Longest time until the set-points stand that a Halt could need at any time of the motion
+    /// [s]; 0 if the skill does not know it.
     double stopping_time = 0.0;
+    /// Longest way of the tool frame during such a stop [m]; 0 if the skill does not know it.
     double stopping_distance = 0.0;
-    /// Joint positions along the path, one row per sample [rad]; empty if the skill moves no arm.
+    /// Joint positions along the path, one row per sample, axis 1 first [rad]; empty if the skill
+    /// moves no arm.
     std::vector<std::vector<double>> joint_path{};
 };
 
-/// A value written while the skill runs.
+/// A value of an Input::live parameter that was written while the skill runs.
 struct LiveValue {
+    /// Value in the unit of its field; never Null for a field that has a default.
     Value value;
-    std::optional<UtcTime> meant_for{};  ///< by the writer's clock; none if not sent
+    /// Time for which it is meant, by the writer's clock (SourceTimestamp); none if it was not
+    /// sent.
+    std::optional<UtcTime> meant_for{};
 };
 
 /// One execution of a skill, made by Skill::prepare().
@@ -59,23 +78,28 @@ class ExecutionWork {
 public:
     virtual ~ExecutionWork() = default;
     /// Begins the work; Running has been committed before. The outcome is reported through
-    /// `execution`, which may also be used inside this call.
+    /// `execution`, which may also be used inside this call. An exception ends the execution as
+    /// Halted, error, after forceStop().
     virtual void start(ExecutionHandle execution) = 0;
-    /// Asks to come to rest on the path; answered by ExecutionHandle::atRest(), finish() or fail().
-    /// Errors: reported to the client; then nothing is stopped.
+    /// Asks to come to rest on the path; answered by ExecutionHandle::atRest(), finish() or fail()
+    /// within ProgramOptions::rest_deadline. Never called if the description is not suspendable.
+    /// Errors: reported to the client; then nothing is stopped, and the work goes on.
     virtual Result<void> suspend() = 0;
-    /// Goes on from rest, on the same path.
-    /// Errors: nothing moves then. If the arm was moved meanwhile, the text names the distance.
+    /// Goes on from rest, on the same path. It must move again once this returns without an error.
+    /// Errors: nothing moves then, and the Program stays Suspended. If the arm was moved meanwhile,
+    ///         the text names the distance.
     virtual Result<void> resume() = 0;
-    /// Brakes; answered by ExecutionHandle::atRest(), finish() or fail(). May follow suspend()
-    /// before its answer: then one answer is enough. Also called when a suspended execution is
-    /// given up: then no answer is needed, and the work is destroyed next.
+    /// Brakes; answered by ExecutionHandle::atRest(), finish() or fail() within
+    /// ProgramOptions::rest_deadline. May follow suspend() before its answer: then one answer is
+    /// enough. Also called when a suspended execution is given up: then no answer is needed, and
+    /// the work is destroyed next.
     virtual void halt() = 0;
     /// Uses the device's own stop: the deadline to come to rest has passed, the device was lost, or
     /// the Program is destroyed while it runs.
     virtual void forceStop() noexcept = 0;
     /// Takes a live parameter that a client wrote while this runs; its field's checks have passed.
-    /// Errors: reported to the client.
+    /// \param parameter name of the field; valid during the call, as is `live`
+    /// Errors: reported to the client; the old value stays. The default takes none: not_supported.
     virtual Result<void> input(std::string_view parameter, const LiveValue& live) {
         static_cast<void>(live);
         return fail(Errc::not_supported, std::string(parameter) + " is not taken while Running");
@@ -88,9 +112,11 @@ public:
     }
 };
 
-/// A skill: its description, and the way to begin an execution. Owned by its Program.
+/// A skill: its description, and the way to begin an execution. Owned by its Program. Derive from
+/// TypedSkill for parameters in a struct, or use LambdaSkill for a skill made of functions.
 ///
-/// Threading: all calls come from the owner's thread and must not block.
+/// Threading: all calls come from the owner's thread and must not block. An exception counts as an
+/// error of code internal.
 class Skill {
 public:
     virtual ~Skill() = default;
@@ -99,9 +125,12 @@ public:
     /// Makes all checks of Start, planning included; nothing moves.
     /// \param snapshot a value for every parameter, each checked; Null only for optional ones.
     ///                 Valid during the call.
+    /// \return work that has not begun; never null. It may be destroyed without having been
+    /// started.
     /// Errors: Start is refused with this error, and nothing has changed.
     virtual Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& snapshot) = 0;
-    /// Makes the checks of prepare() for `snapshot`, without any effect.
+    /// Makes the checks of prepare() for `snapshot`, without any effect. The default prepares work
+    /// and drops it; override it to describe the motion.
     /// Errors: reported to the client as: not possible, with the error's text.
     virtual Result<CheckReport> check(const ValueMap& snapshot) {
         METIER_TRY(prepare(snapshot));

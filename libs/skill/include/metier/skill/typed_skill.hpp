@@ -10,9 +10,17 @@ namespace metier::skill {
 
 /// A skill whose parameters and results are plain structs; derive from it and override plan().
 template <typename Parameters, typename Results>
+/// A skill whose parameters and results are plain structs; derive from it and override plan():
+///
+///     struct Grasp { double force = 20.0; };
+///     struct Grasped { double width = 0.0; };
+///     class GraspSkill final : public TypedSkill<Grasp, Grasped> { ... };
+///
+/// Threading: as Skill.
 class TypedSkill : public Skill {
 public:
     /// \param description its parameters and results are replaced by those of the lists
+    /// \param results     their fields get Place::final_result
     TypedSkill(SkillDescription description, FieldList<Parameters> parameters,
                FieldList<Results> results)
         : description_(std::move(description)),
@@ -28,11 +36,13 @@ public:
 
     const SkillDescription& description() const final { return description_; }
 
+    /// Makes the struct and calls plan(). Errors: as FieldList::read() and plan().
     Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& snapshot) final {
         METIER_ASSIGN(auto parameters, parameters_.read(snapshot));
         return plan(parameters);
     }
 
+    /// Makes the struct and calls assess(). Errors: as FieldList::read() and assess().
     Result<CheckReport> check(const ValueMap& snapshot) final {
         METIER_ASSIGN(auto parameters, parameters_.read(snapshot));
         return assess(parameters);
@@ -44,6 +54,8 @@ public:
 
 protected:
     /// Makes all checks of Start, planning included; as Skill::prepare().
+    /// \param parameters in the units of their fields; valid during the call, so copy what the work
+    ///                   needs
     virtual Result<std::unique_ptr<ExecutionWork>> plan(const Parameters& parameters) = 0;
 
     /// Answers Check, as Skill::check(). The default only reports whether plan() succeeds.
