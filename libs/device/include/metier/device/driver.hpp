@@ -20,6 +20,7 @@ namespace metier::device {
 /// connection; nullptr: the device has no such interface.
 struct OpenDevice {
     std::shared_ptr<void> owner;  // shared by the users of several interfaces of one device
+    /// Interfaces of the device; an arm may have all of them.
     device::Arm* arm = nullptr;
     device::MotionPlanner* planner = nullptr;
     device::Gripper* gripper = nullptr;
@@ -30,26 +31,37 @@ struct OpenDevice {
 
 /// Request to open a device.
 struct OpenRequest {
-    std::string name;         ///< name of the server, for messages
-    std::string address;      ///< address of the controller, without a port
-    cell::Settings settings;  ///< settings of the driver, which calls finish()
+    /// Name of the server, for messages.
+    std::string name;
+    /// Address of the controller without a port: a host name or an IP address.
+    std::string address;
+    /// Settings of the driver from the cell file. The driver must call finish() after its last key,
+    /// so that unknown keys are reported.
+    cell::Settings settings;
     /// Model of the arm, must outlive the device; nullptr for other devices.
     const motion::RobotModel* model = nullptr;
 };
 
-/// Setting of a driver that distinguishes controllers behind one address, usually the port.
+/// Setting of a driver that distinguishes controllers behind one address, usually the port. Two
+/// servers that name the same address and value would command the same device.
 struct DevicePort {
-    std::string_view setting{};  ///< empty: several processes may use the device at a time
-    std::uint16_t preset = 0;    ///< value if the setting is missing
+    /// Name of the setting; empty: several processes may use the device at a time.
+    std::string_view setting{};
+    /// Value if the setting is missing.
+    std::uint16_t preset = 0;
 };
 
 /// One kind of controller that metier can talk to. To add one: docs/guide/add-a-robot.md.
 struct Driver {
-    std::string_view name;  ///< name in a cell file: `driver = { type = "ur" }`
-    std::string_view help;  ///< one line: maker, controllers, protocol
+    /// Name in a cell file, unique: `driver = { type = "ur" }`.
+    std::string_view name;
+    /// One line: maker, controllers, protocol.
+    std::string_view help;
     /// Begins to connect; the device connects, and connects again, on its own thread. A controller
     /// that is not there yet is no error: the device's safety state is disconnected until it is.
-    /// Errors: invalid_argument for errors in the settings.
+    /// Called at the start of a server; may wait for the controller's description of its robot.
+    /// Errors: invalid_argument for errors in the settings, or a model that the driver cannot use;
+    ///         others as the driver states.
     Result<OpenDevice> (*open)(const OpenRequest& request);
     /// If set, only one process of this machine at a time may have the device.
     DevicePort port{};

@@ -8,7 +8,7 @@
 
 namespace metier::device {
 
-/// Largest number of axes of one arm.
+/// Largest number of axes of one arm that a driver may have; plans have at most motion::kMaxAxes.
 inline constexpr std::size_t kMaxAxes = 8;
 
 /// One number per axis, axis 1 first: [rad] for positions, [rad/s] for velocities.
@@ -17,18 +17,21 @@ inline constexpr std::size_t kMaxAxes = 8;
 /// LatestValue, and never allocates.
 class JointArray {
 public:
+    /// No axes.
     JointArray() = default;
     /// `size` zeros; `size` <= kMaxAxes.
     explicit JointArray(std::size_t size) noexcept : size_(size) { assert(size <= kMaxAxes); }
-    /// A copy of `values`; at most kMaxAxes of them.
+    /// A copy of `values`; at most kMaxAxes of them, which is checked by assert only.
     explicit JointArray(std::span<const double> values) noexcept : JointArray(values.size()) {
         std::copy(values.begin(), values.end(), values_.begin());
     }
 
+    /// Number of axes.
     std::size_t size() const noexcept { return size_; }
     /// Value of an axis, counted from 0; `axis` must be less than size(), which is not checked.
     double& operator[](std::size_t axis) noexcept { return values_[axis]; }
     double operator[](std::size_t axis) const noexcept { return values_[axis]; }
+    /// Iterators over the values, axis 1 first.
     double* begin() noexcept { return values_.data(); }
     double* end() noexcept { return values_.data() + size_; }
     const double* begin() const noexcept { return values_.data(); }
@@ -46,7 +49,8 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Largest absolute difference of one axis between two arrays of the same size; in their unit.
+/// Largest absolute difference of one axis between two arrays, in their unit. If their sizes
+/// differ, the axes that only one has do not count.
 inline double largestDifference(const JointArray& a, const JointArray& b) noexcept {
     double largest = 0.0;
     for (std::size_t axis = 0; axis < std::min(a.size(), b.size()); ++axis) {

@@ -13,7 +13,8 @@ namespace metier::device {
 
 /// A contact force that ends a motion.
 struct ForceCondition {
-    /// Largest force along x, y, z of the flange frame [N]; empty: that direction is not watched.
+    /// Largest force along x, y, z of the flange frame [N], 0 or more; empty: that direction is not
+    /// watched.
     std::array<std::optional<double>, 3> force{};
 };
 
@@ -28,17 +29,26 @@ public:
 
 /// A motion for the controller's own planner, with the same kinds of paths as metier's planner.
 struct ControllerPlannedMotion {
-    enum class Path : std::uint8_t { joint, line };
+    /// Shape of the path.
+    enum class Path : std::uint8_t {
+        joint,  ///< straight in joint space, to target_flange or else target_joints
+        line    ///< the flange along a straight line, to target_flange
+    };
 
     Path path = Path::joint;
-    JointArray target_joints;              ///< target of a motion to a joint position [rad]
-    std::optional<Frame> target_flange{};  ///< base_from_flange, target of a motion to a pose
-    /// Share of the axes' largest velocity and acceleration, (0, 1].
+    /// Target of a motion to a joint position [rad], axis 1 first; not used with target_flange.
+    JointArray target_joints;
+    /// base_from_flange [m], [rad]: target of a motion to a pose; needed for a line.
+    std::optional<Frame> target_flange{};
+    /// Share of the axes' largest velocity, (0, 1].
     double velocity_share = 1.0;
+    /// Share of the axes' largest acceleration, (0, 1].
     double acceleration_share = 1.0;
-    /// Velocity [m/s] and acceleration [m/s2] of the flange along a line; 0: the controller's own.
+    /// Velocity of the flange along a line [m/s]; 0: the controller's own.
     double line_velocity = 0.0;
+    /// Acceleration of the flange along a line [m/s2]; 0: the controller's own.
     double line_acceleration = 0.0;
+    /// Contact force at which the motion ends as End::force; none: no force is watched.
     std::optional<ForceCondition> until{};
     /// Called in every cycle until the motion is done; shared, since the arm keeps it until then.
     std::shared_ptr<MotionObserver> observer{};
@@ -46,10 +56,17 @@ struct ControllerPlannedMotion {
 
 /// Result of such a motion; the arm stands still.
 struct MotionOutcome {
-    enum class End : std::uint8_t { at_target, stopped, force };
+    /// Way in which the motion ended.
+    enum class End : std::uint8_t {
+        at_target,  ///< the target was reached
+        stopped,    ///< by stopMotion(), on the path
+        force       ///< by ForceCondition, on the path
+    };
     End end = End::at_target;
-    std::array<double, 3> force{};   ///< at the flange when it ended, in the flange frame [N]
-    std::array<double, 3> torque{};  ///< at the flange when it ended, in the flange frame [Nm]
+    /// Force at the flange when it ended, in the flange frame [N].
+    std::array<double, 3> force{};
+    /// Torque at the flange when it ended, in the flange frame [N m].
+    std::array<double, 3> torque{};
     /// Largest absolute force during the motion along x, y, z of the flange frame [N].
     std::array<double, 3> largest_force{};
 };
@@ -69,7 +86,9 @@ public:
 
     /// Begins a motion; does not wait for it.
     /// Errors: resource_unavailable (another motion runs), device_fault, connection_lost,
-    /// out_of_range.
+    ///         invalid_argument (a target of the wrong size or not finite, a share outside (0, 1],
+    ///         a value below 0), out_of_range (a joint target beyond a limit), unreachable (a pose
+    ///         out of reach). `done` is not called then.
     virtual Result<void> move(const ControllerPlannedMotion& motion, Done done) = 0;
     /// Brakes on the path; the motion ends as `stopped`. Does nothing if no motion runs.
     virtual void stopMotion() noexcept = 0;

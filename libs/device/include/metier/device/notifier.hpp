@@ -15,15 +15,16 @@ namespace metier::device {
 /// Threading: signal() from any thread; one thread creates and destroys it, never the handler.
 class Notifier {
 public:
-    /// \param handler runs on the notifier's own thread; must not throw
+    /// Starts the thread.
+    /// \param handler runs on the notifier's own thread; must not throw, nor destroy the Notifier
     explicit Notifier(std::function<void()> handler);
     /// Handles pending signals, then ends the thread. Waits for a running handler.
     ~Notifier();
     Notifier(const Notifier&) = delete;
     Notifier& operator=(const Notifier&) = delete;
 
-    /// Causes a call of `handler`. From any thread, also a cycle thread: neither locks nor
-    /// allocates.
+    /// Causes a call of `handler`, which begins after this call began. From any thread, also a
+    /// cycle thread: neither locks nor allocates.
     void signal() noexcept;
 
 private:

@@ -19,11 +19,20 @@ namespace metier::device {
 /// Threading: as each function says. The serving thread neither locks nor allocates here, but in
 /// open() and close() and as far as moving an End allocates.
 template <typename Request, typename End>
+/// One request at a time on its way from any thread to the thread that serves the device, and its
+/// end on the way back: post() on the caller's thread, take() and end() on the serving one,
+/// dispatch() and with it `done` on the notifying one.
+///
+/// A request stays until its end was dispatched. A request that is still here when the slot is
+/// destroyed is never answered.
+/// Threading: as each function says. The serving thread neither locks nor allocates here, but in
+/// open() and close() and as far as moving an End allocates.
 class RequestSlot {
 public:
+    /// Callback for the end of a request; called without a lock, may post the next request.
     using Done = std::function<void(End)>;
 
-    // ---- any thread ----
+    /// Hands over a request.
     /// \param done called once, by dispatch(), if the request is accepted
     /// Errors: resource_unavailable while another request is here; the error that close() was given
     Result<void> post(Request request, Done done) {
@@ -40,12 +49,12 @@ public:
         posted_.store(&job_->request);
         return {};
     }
-    /// Whether a request is here whose end was not dispatched.
+    /// Whether a request is here whose end was not dispatched. Locks.
     bool occupied() const {
         const std::lock_guard lock(mutex_);
         return job_ != nullptr;
     }
-    /// Asks to stop the request that is here now. Nothing happens if none is.
+    /// Asks to stop the request that is here now. Nothing happens if none is. Does not wait.
     void stop() noexcept { stop_.store(posted_.load() != nullptr); }
 
     // ---- the serving thread ----
@@ -55,9 +64,10 @@ public:
     bool waiting() const noexcept { return new_.load() != nullptr; }
     /// The request that was not taken before; nullptr: none. Valid until end().
     const Request* take() noexcept { return new_.exchange(nullptr); }
-    /// Whether a stop was asked for since the last call.
+    /// Whether a stop was asked for since the last call or the last post().
     bool takeStop() noexcept { return stop_.load() && stop_.exchange(false); }
-    /// Ends the request that is here. Nothing happens if none is, or if it has ended.
+    /// Ends the request that is here, taken or not. Nothing happens if none is, or if it has ended.
+    /// Signal the notifying thread afterwards.
     void end(End how) noexcept {
         if (posted_.load() == nullptr) {
             return;
@@ -74,14 +84,15 @@ public:
         const std::lock_guard lock(mutex_);
         closed_.reset();
     }
-    /// Refuses requests with this error from now on. A request that is here still has to be ended.
+    /// Refuses requests with this error from now on, such as connection_lost. A request that is
+    /// here still has to be ended.
     void close(Error why) {
         const std::lock_guard lock(mutex_);
         closed_ = std::move(why);
     }
 
-    // ---- the notifying thread ----
-    /// Reports the end to the caller of post(). The slot is free for the next request before that.
+    /// Reports the end to the caller of post(); nothing happens if there is none. The slot is free
+    /// for the next request before that.
     void dispatch() {
         if (!ended_.exchange(false)) {
             return;

@@ -17,8 +17,9 @@ class ResetSlot {
 public:
     /// Requests a reset, unless one is under way. If a reset failed within the last 5 s and nobody
     /// has asked since, no reset begins and that failure is returned; a success shows in the safety
-    /// state.
-    /// \return nothing while a reset is under way: ask again later
+    /// state. Locks, does not wait.
+    /// \return nothing while a reset is under way, which began with this call or before: ask again
+    /// later
     std::optional<Result<void>> ask();
     /// Reports whether a requested reset has not ended yet. Locks.
     bool underWay() const;
@@ -26,7 +27,8 @@ public:
     // ---- for the thread that resets ----
     /// Takes a request: true if one came since the last call. Neither locks nor allocates.
     bool taken() noexcept { return wanted_.load() && wanted_.exchange(false); }
-    /// Reports the end of a requested reset; does nothing if none was requested. Locks.
+    /// Reports the end of a requested reset, also of one that was not taken yet; does nothing if
+    /// none was requested. Locks.
     void answer(Result<void> outcome);
 
 private:

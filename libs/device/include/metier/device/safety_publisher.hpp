@@ -12,27 +12,32 @@
 
 namespace metier::device {
 
-/// Safety state of a device, and the callbacks that hear of its changes.
+/// Safety state of a device, and the callbacks that hear of its changes. Changes that follow each
+/// other between two calls of dispatch() are reported together, by the last state.
 ///
 /// Threading: any thread; dispatch() always on the same one, which calls the callbacks without a
 /// lock. All but state() and toTell() lock, so a cycle thread may call only these two.
 class SafetyPublisher {
 public:
+    /// Callback with the newest state; runs on the thread that calls dispatch().
     using Callback = std::function<void(const Safety&)>;
 
+    /// \param initial state that counts as reported
     explicit SafetyPublisher(Safety initial);
 
     /// Newest state with its reason. Locks.
     Safety safety() const;
     /// Newest state; neither locks nor allocates.
     SafetyState state() const noexcept { return state_.load(); }
-    /// Sets the state and its reason.
+    /// Sets the state and its reason. A new reason for the same state is not reported, only shown
+    /// by safety().
     void set(Safety safety);
     /// Reports whether dispatch() has a change to publish.
     bool toTell() const noexcept { return changed_.load(); }
-    /// Calls the callbacks if the state differs from the one that they got last.
+    /// Calls the callbacks, in the order of their onChange(), if the state differs from the one
+    /// that they got last.
     void dispatch();
-    /// Calls `callback` from dispatch(). The registration may outlive this.
+    /// Calls `callback` from dispatch() until the registration ends, which may outlive this.
     Registration onChange(Callback callback);
 
 private:

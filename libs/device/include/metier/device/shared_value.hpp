@@ -17,9 +17,10 @@ class SharedValue {
     static_assert(std::is_trivially_copyable_v<T>, "copied between threads word by word");
 
 public:
+    /// Begins with `initial`, which read() returns until the first write().
     explicit SharedValue(const T& initial = T{}) noexcept { write(initial); }
 
-    /// Publishes a value. Writer only.
+    /// Publishes a value. Writer only; two writers at a time would mix their values.
     void write(const T& value) noexcept {
         std::array<std::uint64_t, kWords> words{};
         std::memcpy(words.data(), &value, sizeof(T));
@@ -31,7 +32,7 @@ public:
         version_.store(version + 2, std::memory_order_release);
     }
 
-    /// The newest published value.
+    /// The newest published value, whole. Any thread.
     T read() const noexcept {
         std::array<std::uint64_t, kWords> words{};
         std::uint64_t before = 0;

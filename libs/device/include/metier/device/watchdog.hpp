@@ -45,19 +45,23 @@ public:
         std::function<void(std::chrono::nanoseconds silent)> noticed;
     };
 
-    /// Period with which the watched thread should call tick(), for a limit.
+    /// Period with which the watched thread should call tick(), for a limit: an eighth of it.
     static constexpr std::chrono::nanoseconds tickPeriod(std::chrono::nanoseconds limit) {
         return limit / 8;
     }
 
-    /// \param limit longest time from one tick to the next, > 0
-    /// \param clock must outlive this and the closures that Actions::post has got
+    /// Starts the thread, which watches from the first tick on.
+    /// \param actions all four must be set
+    /// \param limit   longest time from one tick to the next, > 0
+    /// \param clock   must outlive this and the closures that Actions::post has got
     Watchdog(Actions actions, std::chrono::nanoseconds limit, const Clock& clock);
+    /// Ends the watch and waits for an action that runs.
     ~Watchdog() { end(); }
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// Shows that the watched thread works; only that thread may call it. Does nothing after end().
+    /// Shows that the watched thread works; only that thread may call it. If the stall was not
+    /// noticed by the watchdog's thread, its actions are called here. Does nothing after end().
     void tick();
 
     /// Ends the watch: no action begins after it. Must not be called from an action; a second call
