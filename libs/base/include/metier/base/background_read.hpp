@@ -16,6 +16,14 @@ namespace metier {
 /// Threading: get() from any thread; it waits kPatience at most. The destructor waits for a read
 /// that is under way.
 template <typename T>
+/// Reads files on a thread of its own, for a caller that must not wait long for a disk, such as a
+/// server's thread that checks a user.
+///
+///     BackgroundRead<Users> users(std::make_shared<const Users>(), readUsersIfChanged);
+///     const auto now = users.get();
+///
+/// Threading: get() from any thread; it waits kPatience at most. The destructor waits for a read
+/// that is under way, without a limit if the disk hangs.
 class BackgroundRead {
 public:
     /// Reads the files, or returns `last` if nothing has changed. Runs on the reading thread; must
@@ -33,7 +41,8 @@ public:
           thread_([this](const auto& stop) { run(stop); }) {}
 
     /// Asks for a new read and returns its contents; those of the last read if the new one takes
-    /// longer than kPatience. While such a slow read is under way, get() returns at once.
+    /// longer than kPatience. While such a slow read is under way, get() returns at once. Never
+    /// null; the contents never change.
     std::shared_ptr<const T> get() {
         std::unique_lock lock(mutex_);
         const auto wanted = ++asked_;

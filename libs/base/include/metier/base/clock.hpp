@@ -10,9 +10,9 @@ using SteadyTime = std::chrono::steady_clock::time_point;
 /// Moment on the wall clock: for time stamps that people and other machines read.
 using UtcTime = std::chrono::system_clock::time_point;
 
-/// Source of the time. Tests use one that they move by hand.
+/// Source of the time, so that tests can use one that they move by hand.
 ///
-/// Threading: any thread.
+/// Threading: any thread; neither waits nor allocates.
 class Clock {
 public:
     virtual ~Clock() = default;
@@ -22,19 +22,23 @@ public:
     virtual UtcTime utcNow() const noexcept = 0;
 };
 
-/// The machine's own clocks.
+/// The machine's own clocks: steady_clock and system_clock.
 class SystemClock final : public Clock {
 public:
     SteadyTime now() const noexcept override { return std::chrono::steady_clock::now(); }
     UtcTime utcNow() const noexcept override { return std::chrono::system_clock::now(); }
 };
 
-/// A clock that stands until it is moved; both its times move together.
+/// A clock that stands until it is moved; both its times move together. It begins at SteadyTime{}
+/// and 2026-01-01T00:00:00Z.
+///
+/// Threading: any thread; advance() does not wake threads that wait for a time.
 class ManualClock final : public Clock {
 public:
     SteadyTime now() const noexcept override;
     UtcTime utcNow() const noexcept override;
     /// Moves both times forward.
+    /// \param step >= 0, since the monotonic time must not go back; not checked
     void advance(std::chrono::nanoseconds step) noexcept;
 
 private:

@@ -12,37 +12,61 @@ namespace metier {
 /// Kinds of failure, divided by what the caller can do about them. One table in opcua_skill maps
 /// these to StatusCodes.
 enum class Errc {
-    invalid_argument,      ///< wrong size, not finite, malformed: correct the call
-    type_mismatch,         ///< a value of another type than the parameter has
-    out_of_range,          ///< beyond a stated limit: choose another value
-    unreachable,           ///< no joint position reaches the pose within the limits
-    not_found,             ///< the named thing does not exist
-    already_exists,        ///< the name or id is taken
-    invalid_state,         ///< not allowed in the current state: Reset or wait
-    locked,                ///< another client holds it: wait or ask its owner
-    resource_unavailable,  ///< the device is busy with another skill
-    access_denied,         ///< the user may not do this
-    timeout,               ///< the deadline passed
-    connection_lost,       ///< the peer is gone: reconnect
-    execution_lost,        ///< the server has no record of the execution any more: it is over
-    device_fault,          ///< the device refused or stopped: see its own panel
-    limit_violated,        ///< a limit was exceeded during a motion
-    not_supported,         ///< the peer or device cannot do this
-    cancelled,             ///< ended on request
-    internal,              ///< a defect of this program
+    /// Wrong size, not finite, malformed: correct the call.
+    invalid_argument,
+    /// A value of another type than the parameter has.
+    type_mismatch,
+    /// A value beyond a stated limit: choose another one.
+    out_of_range,
+    /// No joint position reaches the pose within the limits.
+    unreachable,
+    /// The named thing does not exist.
+    not_found,
+    /// The name or id is taken.
+    already_exists,
+    /// The current state does not allow it: Reset or wait.
+    invalid_state,
+    /// Another client holds it: wait or ask its owner.
+    locked,
+    /// The device is busy with another skill, or a file, port or disk cannot be had.
+    resource_unavailable,
+    /// The user may not do this.
+    access_denied,
+    /// The deadline passed; what was asked for may still happen.
+    timeout,
+    /// The peer is gone: reconnect.
+    connection_lost,
+    /// The server has no record of the execution any more: it is over.
+    execution_lost,
+    /// The device refused or stopped: see its own panel.
+    device_fault,
+    /// A limit was exceeded during a motion.
+    limit_violated,
+    /// The peer or device cannot do this.
+    not_supported,
+    /// Ended on request.
+    cancelled,
+    /// A defect of this program, or an exception of a skill.
+    internal,
 };
 
-/// The enumerator's name, for logs and JSON.
+/// Name of the enumerator, for logs and JSON; valid for ever. A number outside the enum gives
+/// "unknown".
+/// Threads: any; pure.
 std::string_view toString(Errc code) noexcept;
 
 /// A failure: `code` is for the program, `message` for the person, with value, limit and unit.
 struct Error {
+    /// Kind of the failure.
     Errc code = Errc::internal;
+    /// Text for a person: the thing, the value, the limit and the unit.
     std::string message;
 };
 
 /// A value, or the Error that explains why there is none.
 template <typename T = void>
+/// A value, or the Error that explains why there is none. Reading the value of a failed one is
+/// undefined: test it first.
 using Result = tl::expected<T, Error>;
 
 /// A failed Result: `return fail(Errc::not_found, "no axis 7");`

@@ -21,8 +21,8 @@ public:
     /// Number of buckets, with the one for longer durations.
     static constexpr std::size_t kBuckets = kBounds.size() + 1;
 
-    /// Adds one duration.
-    /// \param seconds >= 0
+    /// Adds one duration. One that is not a number goes to the first bucket and spoils the sum.
+    /// \param seconds >= 0 [s]
     void add(double seconds) noexcept {
         std::size_t bucket = 0;
         while (bucket < kBounds.size() && seconds > kBounds[bucket]) {
@@ -34,8 +34,11 @@ public:
 
     /// Contents at one moment. The mean is `sum` divided by the sum of `counts`.
     struct Snapshot {
-        std::array<std::uint64_t, kBuckets> counts{};  ///< values in each bucket, not cumulated
-        double sum = 0;                                ///< sum of all values [s]
+        /// Number of values in each bucket of kBounds, not cumulated; the last one counts the
+        /// longer ones.
+        std::array<std::uint64_t, kBuckets> counts{};
+        /// Sum of all values [s].
+        double sum = 0;
     };
     /// Copies the present contents. Any thread; neither waits nor allocates.
     Snapshot read() const noexcept {
@@ -48,6 +51,7 @@ public:
     }
 
 private:
+    // Both since the histogram was made.
     std::array<std::atomic<std::uint64_t>, kBuckets> counts_{};
     std::atomic<double> sum_{0};
 };

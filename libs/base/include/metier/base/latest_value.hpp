@@ -16,9 +16,10 @@ class LatestValue {
     static_assert(std::is_trivially_copyable_v<T>, "copied between threads byte by byte");
 
 public:
+    /// Begins with `initial`, which read() returns until the first write().
     explicit LatestValue(const T& initial = T{}) { buffers_.fill(initial); }
 
-    /// Publishes a value. Writer only.
+    /// Publishes a value; one that was not read is lost. Writer only.
     void write(const T& value) noexcept {
         buffers_[write_index_] = value;
         write_index_ = middle_.exchange(write_index_ | kFresh, std::memory_order_acq_rel) & kIndex;
@@ -37,6 +38,8 @@ public:
     bool hasNew() const noexcept { return (middle_.load(std::memory_order_acquire) & kFresh) != 0; }
 
 private:
+    // Bits of middle_: the index of the buffer that neither side holds, and whether it is newer
+    // than the reader's.
     static constexpr std::uint8_t kFresh = 4;
     static constexpr std::uint8_t kIndex = 3;
 

@@ -3,11 +3,14 @@
 namespace metier {
 
 /// A pose in the form of OPC UA's 3DFrame: position x, y, z [m] and rotations a, b, c about x, y, z
-/// [rad] with R = Rz(c) * Ry(b) * Rx(a). The name of a variable states the frames.
+/// [rad] with R = Rz(c) * Ry(b) * Rx(a). The name of a variable states the frames: base_from_tool.
+/// Conversion to a quaternion: motion::toPose().
 struct Frame {
+    /// Position [m].
     double x = 0.0;
     double y = 0.0;
     double z = 0.0;
+    /// Rotations about x, y and z [rad]; any finite value.
     double a = 0.0;
     double b = 0.0;
     double c = 0.0;
@@ -24,7 +27,8 @@ struct Vector3 {
     friend bool operator==(const Vector3&, const Vector3&) = default;
 };
 
-/// An interval with both ends included. The skill model reads 0..0 as "not set".
+/// An interval with both ends included, in the unit of its use. The skill model reads 0..0 as "not
+/// set".
 struct Range {
     double low = 0.0;
     double high = 0.0;

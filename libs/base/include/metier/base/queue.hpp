@@ -16,12 +16,18 @@ namespace metier {
 /// Threading: any number of producers and consumers. Not for a cycle thread: it locks.
 /// No call waits but popUntil(), which waits until its deadline at most.
 template <typename T>
+/// A bounded first-in-first-out queue between threads.
+///
+/// Threading: any number of producers and consumers. Not for a cycle thread: it locks.
+/// No call waits but popUntil(), which waits until its deadline at most. No thread may use it when
+/// it is destroyed.
 class Queue {
 public:
     /// \param capacity largest number of elements, > 0
     explicit Queue(std::size_t capacity) : capacity_(capacity) {}
 
-    /// Appends a value; returns false if the queue is full or closed. Does not wait.
+    /// Appends a value; returns false, and drops the value, if the queue is full or closed. Does
+    /// not wait.
     bool tryPush(T value) {
         {
             const std::lock_guard lock(mutex_);
@@ -35,7 +41,7 @@ public:
     }
 
     /// Takes the oldest element; waits for one until `deadline`. Nothing if none came by then, or
-    /// if the queue is closed and empty.
+    /// if the queue is closed and empty. A deadline that is over takes what is there.
     std::optional<T> popUntil(SteadyTime deadline) {
         std::unique_lock lock(mutex_);
         changed_.wait_until(lock, deadline, [this] { return closed_ || !values_.empty(); });
@@ -48,7 +54,7 @@ public:
     }
 
     /// Refuses further elements and wakes every waiting thread. Elements in the queue can still be
-    /// taken.
+    /// taken. Cannot be undone.
     void close() {
         {
             const std::lock_guard lock(mutex_);

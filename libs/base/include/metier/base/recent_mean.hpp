@@ -15,7 +15,8 @@ namespace metier {
 /// Threading: one thread at a time reads. Adding to the histogram is never delayed by it.
 class RecentMean {
 public:
-    /// \param times, clock must outlive this
+    /// \param times its contents so far do not count; must outlive this
+    /// \param clock must outlive this
     /// \param span  shortest time over which a mean is taken, > 0
     RecentMean(const TimeHistogram& times, const Clock& clock, std::chrono::milliseconds span);
 

@@ -16,19 +16,25 @@ namespace metier {
 /// Characters that trimmed() removes unless it is given others.
 inline constexpr std::string_view kBlanks = " \t\r\n\v\f";
 
-/// The text without the blanks at both ends.
+/// The text without the blanks at both ends; empty if it has nothing else.
+/// \param blanks each character of it is removed
 std::string_view trimmed(std::string_view text, std::string_view blanks = kBlanks) noexcept;
 
 /// Parts between separators, including empty ones: "a,,b," has four parts. An empty text has none.
+/// The parts are not trimmed.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
-/// ASCII letters in lower or upper case, all other bytes as they are.
+/// The text with ASCII letters in lower case, all other bytes as they are, whatever the locale is.
 std::string inLowerCase(std::string_view text);
+/// The same in upper case.
 std::string inUpperCase(std::string_view text);
 
 /// Number that the whole text spells, decimal if T is an integer. Nothing if the text has any other
 /// character (a blank or a leading '+' included), or if T cannot hold the number.
 template <typename T>
+/// Number that the whole text spells, decimal if T is an integer. Nothing if the text has any other
+/// character (a blank or a leading '+' included), or if T cannot hold the number. "inf" and "nan"
+/// are numbers for a floating-point T: check std::isfinite().
 std::optional<T> numberIn(std::string_view text) noexcept {
     T number{};
     const auto* const end = text.data() + text.size();
@@ -38,15 +44,17 @@ std::optional<T> numberIn(std::string_view text) noexcept {
 
 /// One character of a UTF-8 text.
 struct Utf8Character {
+    /// Unicode code point, 0 to 0x10FFFF without surrogates.
     std::uint32_t code_point = 0;
-    std::size_t size = 0;  ///< bytes that it takes in the text, 1 to 4
+    /// Number of bytes that it takes in the text, 1 to 4.
+    std::size_t size = 0;
 };
 
 /// First character of the text. Nothing if the text is empty, or begins with a sequence that is
 /// cut, overlong, a surrogate or above U+10FFFF.
 std::optional<Utf8Character> firstCharacter(std::string_view text) noexcept;
 
-/// Whether the text is well-formed UTF-8.
+/// Whether the text is well-formed UTF-8; an empty one is.
 bool isUtf8(std::string_view text) noexcept;
 
 }  // namespace metier

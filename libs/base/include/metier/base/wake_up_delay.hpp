@@ -19,7 +19,7 @@ public:
     /// Begins to measure.
     WakeUpDelay() : thread_([this](const std::stop_token& stop) { measure(stop); }) {}
 
-    /// Longest delay since the last call; 0 if none was measured.
+    /// Longest delay since the last call, from all callers together; 0 if none was measured.
     std::chrono::nanoseconds takeLongest() { return longest_.exchange({}); }
 
 private:
