@@ -10,29 +10,34 @@
 
 namespace metier::motion {
 
-/// Largest number of axes of a robot that motions can be planned for.
+/// Largest number of axes of a robot that motions can be planned for; arms may have
+/// device::kMaxAxes.
 inline constexpr std::size_t kMaxAxes = 7;
 
 /// One value per axis, axis 1 first: joint positions [rad], velocities [rad/s] and so on.
 /// At most kMaxAxes values; trivially copyable, never allocates.
 class JointVector {
 public:
+    /// No axes.
     JointVector() = default;
-    /// \param size <= kMaxAxes; all values 0
+    /// \param size <= kMaxAxes, which is not checked; all values 0
     explicit JointVector(std::size_t size) noexcept : size_(size) {}
-    /// \param values at most kMaxAxes
+    /// \param values at most kMaxAxes; more are dropped
     JointVector(std::initializer_list<double> values) noexcept;
 
-    /// Errors: invalid_argument if there are too many values or one is not finite.
+    /// Copies values that were not checked before, such as those of a client.
+    /// Errors: invalid_argument if there are more than kMaxAxes values or one is not finite.
     static Result<JointVector> from(std::span<const double> values);
-    /// Makes a vector with `value` for each of `size` axes.
+    /// Makes a vector with `value` for each of `size` axes; size <= kMaxAxes.
     static JointVector constant(std::size_t size, double value) noexcept;
 
+    /// Number of axes.
     std::size_t size() const noexcept { return size_; }
     bool empty() const noexcept { return size_ == 0; }
     /// Value of an axis, counted from 0; `axis` must be less than size(), which is not checked.
     double operator[](std::size_t axis) const noexcept { return values_[axis]; }
     double& operator[](std::size_t axis) noexcept { return values_[axis]; }
+    /// Iterators over the values, axis 1 first.
     double* begin() noexcept { return values_.data(); }
     double* end() noexcept { return values_.data() + size_; }
     const double* begin() const noexcept { return values_.data(); }
@@ -57,7 +62,7 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Largest absolute difference of two positions of the same size [rad].
+/// Largest absolute difference of two positions of the same size, in their unit; 0 without axes.
 double maxDifference(const JointVector& a, const JointVector& b) noexcept;
 
 }  // namespace metier::motion

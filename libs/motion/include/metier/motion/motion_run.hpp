@@ -9,17 +9,24 @@ namespace metier::motion {
 
 /// Rule for cycles that come late.
 struct LateCyclePolicy {
-    Seconds cycle{0};      ///< period of the controller; 0: no step is too late
-    int most_skipped = 4;  ///< cycles that one step may skip; the motion stops if more are missing
+    /// Period of the controller [s]; 0: no step is too late.
+    Seconds cycle{0};
+    /// Number of cycles that one step may skip; the motion stops if more are missing.
+    int most_skipped = 4;
 };
 
 /// Time and way that a motion needs to come to rest.
 struct StoppingEstimate {
+    /// Time until the set-points stand [s].
     Seconds time{0};
-    double distance = 0;  ///< distance of the tool frame's origin now from its place at rest [m]
+    /// Distance of the tool frame's origin now from its place at rest [m].
+    double distance = 0;
 };
 
 /// Runs a trajectory: gives the set-point of each cycle, brakes and goes on along the path.
+///
+///     MotionRun run(*planner.lin(request));
+///     while (!run.finished()) { send(run.next(cycle).position); }  // once per cycle
 ///
 /// Stop, halt, resume and override act along the path only: the arm never leaves it. The time to
 /// rest after halt() depends on the robot's own limits, never on those of the plan.
@@ -32,6 +39,7 @@ public:
     static constexpr double kHaltFactor = 2.0;
 
     /// Starts at rest at the beginning of the path, moving with the first next().
+    /// \param late without it no step is too late
     explicit MotionRun(Trajectory trajectory, const LateCyclePolicy& late = {}) noexcept;
 
     /// Advances by `step` and returns the set-point. A late cycle passes its longer step and so
@@ -45,14 +53,18 @@ public:
     /// Brakes on the path to rest, for Suspend. Keeps the plan's limits if they bring the motion to
     /// rest within kGentleStop, else uses the robot's own. Takes effect at next().
     void stop() noexcept;
-    /// Brakes like stop(), but in exactly this time by a PaceBrake, whatever the limits are.
+    /// Brakes like stop(), but in exactly this time by a PaceBrake, whatever the limits are. The
+    /// caller must see that the axes can do it.
     /// \param length [s], > 0
     void stopIn(Seconds length) noexcept;
     /// Brakes on the path with kHaltFactor times the robot's own acceleration and jerk, for Halt.
+    /// Also while a stop brakes. Takes effect at next().
     void halt() noexcept;
-    /// Goes on to the end of the path, from rest or while it still brakes.
+    /// Goes on to the end of the path, from rest or while it still brakes. Does nothing unless it
+    /// was stopped.
     void resume() noexcept;
-    /// Sets the speed as a share of the planned speed.
+    /// Sets the speed as a share of the planned speed; it changes within the plan's limits. After a
+    /// stop it takes effect with resume().
     /// \param factor clamped to [0, 1]; 0: the arm stands still on the path
     void setOverride(double factor) noexcept;
 
@@ -65,10 +77,11 @@ public:
     bool finished() const noexcept;
     /// Place on the path, 0 start to 1 end.
     double pathParameter() const noexcept;
-    /// Time until rest at the end; while stopped or braking for a stop, time until rest.
+    /// Time until rest at the end [s]; while stopped or braking for a stop, time until rest.
     Seconds remaining() const noexcept;
     /// Time and way that halt() would need from here to rest; both zero at rest.
     StoppingEstimate stoppingEstimate() const noexcept;
+    /// The motion that is run; valid as long as this.
     const Trajectory& trajectory() const noexcept { return trajectory_; }
 
 private:

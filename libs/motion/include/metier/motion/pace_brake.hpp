@@ -15,13 +15,16 @@ public:
     /// \param length time until rest [s], > 0
     explicit PaceBrake(double length) noexcept : length_(length) {}
 
-    /// Advances by `step` [s] of real time.
-    /// \return planned time that passes meanwhile [s]
+    /// Advances by `step` [s] of real time, >= 0.
+    /// \return planned time that passes meanwhile [s], at most half of `length` altogether
     double advance(double step) noexcept;
-    /// Slows the planned state of the present planned time to the present pace.
+    /// Slows the planned state of the present planned time to the present pace: the position stays,
+    /// velocity and acceleration become those in real time.
     ScalarState slowed(const ScalarState& planned) const noexcept;
+    /// Whether the pace is 0.
     bool over() const noexcept { return elapsed_ >= length_; }
-    double remaining() const noexcept { return over() ? 0.0 : length_ - elapsed_; }  ///< [s]
+    /// Time until the pace is 0 [s].
+    double remaining() const noexcept { return over() ? 0.0 : length_ - elapsed_; }
 
 private:
     double planned() const noexcept;

@@ -7,15 +7,18 @@ namespace metier::motion {
 /// A rigid transform, named target_from_source: maps coordinates of the source frame into the
 /// target frame. Neighbours match: base_from_tool = base_from_flange * flange_from_tool.
 struct Pose {
-    Eigen::Vector3d translation = Eigen::Vector3d::Zero();         ///< [m]
-    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< unit quaternion
+    /// Origin of the source frame in the target frame [m].
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+    /// Rotation of the source frame in the target frame; must be a unit quaternion.
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
 
+    /// The transform between two equal frames.
     static Pose identity() { return {}; }
-    /// source_from_target.
+    /// The transform back: source_from_target.
     Pose inverse() const;
 };
 
-/// a_from_c = a_from_b * b_from_c.
+/// Chains two transforms: a_from_c = a_from_b * b_from_c. The rotation is normalised.
 Pose operator*(const Pose& a_from_b, const Pose& b_from_c);
 
 /// Converts a point from source coordinates to target coordinates [m].

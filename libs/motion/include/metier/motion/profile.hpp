@@ -5,32 +5,36 @@
 
 namespace metier::motion {
 
-/// Position along one dimension and its first two time derivatives.
+/// Position along one dimension and its first two time derivatives. The unit of length is the
+/// user's: rad, m, a path parameter, or s of planned time; time is in s.
 struct ScalarState {
     double position = 0;
     double velocity = 0;
     double acceleration = 0;
 };
 
-/// Bounds of |velocity|, |acceleration| and |jerk| along one dimension, all > 0.
+/// Bounds of |velocity|, |acceleration| and |jerk| along one dimension, all > 0, in the same unit
+/// of length.
 struct ScalarLimits {
     double velocity = 0;
     double acceleration = 0;
     double jerk = 0;
 };
 
-/// A jerk-limited motion along one dimension that ends at rest: a few pieces of constant jerk.
+/// A jerk-limited motion along one dimension that ends at rest: at most 8 pieces of constant jerk.
 ///
 /// Threading: a value; nothing allocates, locks or throws.
 /// Source: docs/motion.md#profile.
 class Profile {
 public:
+    /// Rest at position 0.
     Profile() = default;
     /// Motion from any state to rest at `target`, as quick as the limits allow (time-optimal except
     /// for extreme start accelerations).
     static Profile toRest(const ScalarState& start, double target,
                           const ScalarLimits& limits) noexcept;
-    /// Motion from any state to rest, as soon as the limits allow, at any position.
+    /// Motion from any state to rest, as soon as the limits allow, at any position. A velocity over
+    /// its limit is allowed.
     static Profile brake(const ScalarState& start, const ScalarLimits& limits) noexcept;
 
     /// The same motion in `factor` > 0 times the time.
@@ -41,12 +45,14 @@ public:
     /// State after `time` [s]; before 0 the start state, after duration() exactly the end state, at
     /// rest.
     ScalarState at(double time) const noexcept;
-    /// Jerk after `time` [s]; 0 after duration().
+    /// Jerk after `time` [s]; 0 after duration(), that of the start before 0.
     double jerkAt(double time) const noexcept;
     /// Position at the end, at rest.
     double end() const noexcept { return end_; }
-    /// Begin and end of constant velocity [s]; equal if the velocity is constant nowhere.
+    /// Begin of the part with constant velocity [s]; steadyTo() if the velocity is constant
+    /// nowhere.
     double steadyFrom() const noexcept { return steady_from_; }
+    /// End of that part [s].
     double steadyTo() const noexcept { return steady_to_; }
 
 private:

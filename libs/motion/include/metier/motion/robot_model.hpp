@@ -17,72 +17,97 @@ class TomlFile;
 
 namespace metier::motion {
 
-/// A cylinder with round ends around a link, for self-collision.
+/// A cylinder with round ends around a link, for self-collision. Neighbouring links may overlap.
 struct Capsule {
-    std::size_t link = 0;  ///< 0: the base; i: the link behind axis i, which that axis moves
-    Eigen::Vector3d from;  ///< one end, in the joint frame of that axis, in the base frame for link
-                           ///< 0 [m]
+    /// Link number: 0 is the base; i is the link behind axis i, which that axis moves.
+    std::size_t link = 0;
+    /// One end [m], in the joint frame of that axis, in the base frame for link 0.
+    Eigen::Vector3d from;
+    /// Other end [m], in the same frame.
     Eigen::Vector3d to;
-    double radius = 0;  ///< [m]
+    /// Radius [m], > 0.
+    double radius = 0;
 };
 
 /// A capped cone with rounded edges to draw a link with.
 struct VisualPrimitive {
-    std::size_t link = 0;  ///< link number as in Capsule
+    /// Link number as in Capsule.
+    std::size_t link = 0;
+    /// One end [m], in the frame of a Capsule of that link.
     Eigen::Vector3d from;
+    /// Other end [m], in the same frame.
     Eigen::Vector3d to;
-    double from_radius = 0;         ///< [m]
-    double to_radius = 0;           ///< [m]
-    std::array<double, 3> color{};  ///< red, green, blue, 0 to 1
-    double edge = -1;               ///< rounding of both edges [m]; negative: the drawing program
-                                    ///< chooses
+    /// Radius at `from` [m].
+    double from_radius = 0;
+    /// Radius at `to` [m].
+    double to_radius = 0;
+    /// Red, green, blue, 0 to 1.
+    std::array<double, 3> color{};
+    /// Rounding of both edges [m]; negative: the drawing program chooses.
+    double edge = -1;
 };
 
 /// Names and shape of a kind of robot.
 struct RobotAppearance {
-    std::string name;     ///< such as "ur5"
-    std::string maker;    ///< such as "Universal Robots"
-    std::string product;  ///< such as "UR5"
+    /// Name by which a cell file chooses it: "ur5".
+    std::string name;
+    /// Name of the maker: "Universal Robots".
+    std::string maker;
+    /// Name of the product: "UR5".
+    std::string product;
+    /// Shape for self-collision; empty: it is not checked.
     std::vector<Capsule> capsules;
+    /// Shape to draw.
     std::vector<VisualPrimitive> visual;
 };
 
-/// Everything known about a kind of robot: kinematics, limits, tool frames, shape, names.
+/// Everything known about a kind of robot: kinematics, limits, tool frames, shape, names. Read from
+/// a file of models/, or made of what a server publishes.
 ///
-/// Threading: immutable, any thread.
+/// Threading: immutable, any thread; references are valid as long as the model.
 class RobotModel {
 public:
-    /// Reads a file of models/ (models/README.md).
-    /// Errors: not_found; invalid_argument with file:line, key and reason.
+    /// Reads a file of models/ (models/README.md). Waits for the disk.
+    /// Errors: not_found; invalid_argument with file:line, key and reason, all errors together.
     static Result<RobotModel> load(const std::filesystem::path& path);
-    /// The same from text; `name` takes the place of the file in messages.
+    /// Reads the same from text.
+    /// \param name takes the place of the file in messages
+    /// Errors: invalid_argument.
     static Result<RobotModel> parse(std::string_view text, const std::string& name);
 
-    /// Makes a model of a chain alone, as a client reads it from a server. It has no shape.
-    /// Errors: invalid_argument (number of axes, axis not a unit vector, limits, home).
+    /// Makes a model of a chain alone, as a client reads it from a server. It has no shape and no
+    /// names.
+    /// Errors: invalid_argument (number of axes, axis not a unit vector, frames not rigid, limits,
+    ///         home outside them, cycle time, name of a tool frame), with the axis.
     static Result<RobotModel> fromChain(ChainDescription chain);
 
     /// Copies the model with another chain of as many axes, for example the calibrated one of a
-    /// controller; names and shape stay. Errors: as fromChain().
+    /// controller; names and shape stay.
+    /// Errors: invalid_argument (another number of axes); as fromChain().
     Result<RobotModel> withChain(ChainDescription chain) const;
 
+    /// Names, as in RobotAppearance; empty for a chain alone.
     std::string_view name() const noexcept { return appearance_.name; }
     std::string_view maker() const noexcept { return appearance_.maker; }
     std::string_view product() const noexcept { return appearance_.product; }
+    /// Number of axes, 1 to kMaxAxes.
     std::size_t axisCount() const noexcept { return chain_.joints.size(); }
     const ChainDescription& chain() const noexcept { return chain_; }
     const Kinematics& kinematics() const noexcept { return kinematics_; }
+    /// Limits of an axis, counted from 0; `axis` must be less than axisCount(), which is not
+    /// checked.
     const JointLimits& limits(std::size_t axis) const noexcept {
         return chain_.joints[axis].limits;
     }
     const CartesianLimits& cartesianLimits() const noexcept { return chain_.cartesian_limits; }
+    /// A usable, non-singular working position within the limits [rad].
     const JointVector& home() const noexcept { return chain_.home; }
     /// Controller cycle [s].
     double cycleTime() const noexcept { return chain_.cycle_time; }
     const std::vector<Capsule>& capsules() const noexcept { return appearance_.capsules; }
     const std::vector<VisualPrimitive>& visual() const noexcept { return appearance_.visual; }
 
-    /// Finds a tool frame by its name; "" and "flange" are the flange itself.
+    /// Finds a tool frame by its name; "" and "flange" are the flange itself, without mass.
     /// Errors: not_found, with the known names.
     Result<ToolFrame> tool(std::string_view tool_name) const;
 

@@ -17,10 +17,13 @@ struct TargetStates;
 
 /// Options of playing out a stream of set-points.
 struct StreamOptions {
-    Seconds cycle{0.008};          ///< period of the controller, > 0
-    int playout_delay_cycles = 3;  ///< delay from intended time to execution of a set-point,
-                                   ///< >= 0; 0: every cycle takes the newest set-point at once
-    int stale_cycles = 6;          ///< cycles with nothing to play before it gives up, >= 1
+    /// Period of the controller [s], > 0.
+    Seconds cycle{0.008};
+    /// Delay from intended time to execution of a set-point [cycles], >= 0; 0: every cycle takes
+    /// the newest set-point at once.
+    int playout_delay_cycles = 3;
+    /// Number of cycles with nothing to play before it gives up, >= 1.
+    int stale_cycles = 6;
     /// Without delay: cycles without a set-point during which the motion is extrapolated, >= 0.
     int extrapolated_cycles = 3;
     /// Without delay: largest speed of any axis at which the stream counts as standing; then, if
@@ -39,13 +42,26 @@ struct StreamOptions {
 
 /// A refused set-point. It has no text, so that the cycle thread need not allocate.
 struct StreamRefusal {
-    enum class Reason { wrong_size, not_finite, position_limit, jump, not_later, timed_out };
+    /// Kind of refusal.
+    enum class Reason {
+        wrong_size,      ///< another number of axes than the arm has
+        not_finite,      ///< a value that is infinite or not a number
+        position_limit,  ///< a value beyond the joint limits
+        jump,            ///< too far from the set-point before, see StreamOptions::jump_factor
+        not_later,       ///< its time is not after that of the set-point before
+        timed_out        ///< the stream is over: silent for StreamOptions::stale_cycles, or stop()
+    };
     Reason reason = Reason::wrong_size;
-    std::size_t axis = 0;  ///< from 0
-    double value = 0;      ///< [rad]; a number of axes for wrong_size; [s] for not_later
+    /// Axis that is refused, from 0; for not_finite, position_limit and jump.
+    std::size_t axis = 0;
+    /// Refused value [rad]; a number of axes for wrong_size; [s] for not_later and timed_out.
+    double value = 0;
+    /// Limit that it broke, in the same unit.
     double limit = 0;
 };
-/// Error text for a person, with axis, value, limit and unit. Allocates.
+/// Error text for a person, with axis, value, limit and unit. Allocates. The code is
+/// invalid_argument for wrong_size, not_finite and not_later, out_of_range for position_limit and
+/// jump, timeout for timed_out.
 Error toError(const StreamRefusal& refusal);
 
 /// Follows joint positions that arrive irregularly, and never breaks an axis limit.
@@ -55,22 +71,28 @@ Error toError(const StreamRefusal& refusal);
 class StreamFollower {
 public:
     enum class State {
-        waiting,    ///< no set-point yet: holds
-        following,  ///< plays the stream
-        stopping,   ///< stream silent: brakes
-        timed_out,  ///< at rest after the stream fell silent
+        /// No set-point yet: holds the start position.
+        waiting,
+        /// Plays the stream.
+        following,
+        /// The stream is silent, or stop() was called: brakes.
+        stopping,
+        /// At rest after that; set-points are refused for good.
+        timed_out,
     };
 
+    /// \param model its limits are copied
     /// \param start position at which the arm stands still [rad]; the first set-point is checked
-    /// against it
+    ///              against it
     /// Errors: invalid_argument (sizes, options out of range).
     static Result<StreamFollower> create(const RobotModel& model, const StreamOptions& options,
                                          const JointVector& start);
 
     /// Takes a set-point, or leaves everything unchanged and returns the reason.
-    /// \param position [rad], one value per axis
-    /// \param intended_time time of the set-point on the sender's clock; later than the one before
-    /// \param now           time on the clock of next()
+    /// \param position      [rad], one value per axis, within the joint limits
+    /// \param intended_time time of the set-point on the sender's clock [s]; later than the one
+    ///                      before. Only differences count, so the two clocks need not agree.
+    /// \param now           time on the clock of next() [s]
     std::optional<StreamRefusal> accept(const JointVector& position, Seconds intended_time,
                                         Seconds now) noexcept;
 
@@ -81,13 +103,15 @@ public:
     /// far as that would delay a set-point for `intended_time`.
     void skipRest(Seconds intended_time, Seconds now) noexcept;
 
-    /// Computes the set-point of this cycle.
-    /// \param now one cycle later than at the call before
+    /// Computes the set-point of this cycle, always within the axes' limits of position, velocity
+    /// and acceleration, with StreamOptions::braking_factor and jerk_factor.
+    /// \param now one cycle later than at the call before [s]
     SetPoint next(Seconds now) noexcept;
 
-    /// Ends the stream: brakes to rest; the state is timed_out then.
+    /// Ends the stream: brakes to rest; the state is timed_out then. Does not wait.
     void stop() noexcept;
 
+    /// State after the last call of next() or accept().
     State state() const noexcept { return state_; }
     /// Reports whether the last set-point stands still: no axis has velocity or acceleration.
     bool atRest() const noexcept;
