@@ -26,13 +26,18 @@ namespace metier::client {
 class AsyncSkill {
 public:
     template <typename T = void>
+    /// Callback for the outcome of a request; runs on the client's thread and must not block. May
+    /// send the next request.
     using Done = std::function<void(opcua::Answer<T>)>;
+    /// Callback for a transition; runs on the client's thread and must not block.
     using OnTransition = std::function<void(const skill::TransitionEvent&)>;
 
     /// Callbacks for events of the skill; each may be empty. Called on the client's thread.
     struct Watch {
-        OnTransition on_transition{};  ///< each transition of the skill, of any client's execution
-        /// The skill begins to come to rest. Not called for servers that do not publish it.
+        /// Each transition of the skill, of any client's execution.
+        OnTransition on_transition{};
+        /// The skill begins to come to rest; the transition follows at standstill. Not called for
+        /// servers that do not publish it.
         std::function<void(const skill::StoppingEvent&)> on_stopping{};
         /// Transitions may have been missed: ask for the present state.
         std::function<void()> on_missed{};
@@ -41,13 +46,16 @@ public:
         std::function<void(const std::string& why)> on_ended{};
     };
 
-    /// Reads the skill's description and subscribes to its events; waits. The first event may come
-    /// before this returns. `client` must outlive the result.
+    /// Reads the skill's description and subscribes to its events; waits for the server. The first
+    /// event may come before this returns.
+    /// \param client must outlive the result
+    /// Errors: connection_lost, timeout; those of the server.
     static opcua::Answer<AsyncSkill> open(opcua::Client& client, SkillAddress address, Watch watch);
     AsyncSkill(AsyncSkill&&) noexcept;
     AsyncSkill& operator=(AsyncSkill&&) noexcept;
     ~AsyncSkill();
 
+    /// Address that it was opened with; valid as long as this.
     const SkillAddress& address() const noexcept;
     /// Description as far as the server publishes it. Which parameters must be given is not
     /// published: none is marked so. The skill counts as suspendable unless the server says
@@ -59,21 +67,25 @@ public:
 
     /// Present state of the skill.
     struct Now {
+        /// State by CurrentState/Number, as the server sent it; not compared with the known ones.
         skill::State state = skill::State::halted;
+        /// Reason of the state, for a person; may be empty.
         std::string reason_text{};
-        /// Id of the last execution; empty if the server does not publish it
+        /// Id of the last execution; empty if the server does not publish it.
         std::string execution_id{};
     };
     /// Reads the present state; waits for the server.
+    /// Errors: connection_lost, timeout; those of the server.
     opcua::Answer<Now> now() const;
 
-    /// Sends StartWith; `done` gets the execution's id.
+    /// Sends StartWith; `done` gets the execution's id. Running has been committed then.
     opcua::Answer<> startWith(const skill::StartRequest& request, Done<std::string> done) const;
-    /// Calls any method but StartWith.
+    /// Calls any method but StartWith, such as Suspend; `done` gets no value. A Suspend or Halt is
+    /// answered before standstill.
     opcua::Answer<> call(skill::Method method, Done<> done) const;
-    /// Sends Check; `done` gets its report.
+    /// Sends Check; `done` gets its report. Nothing moves.
     opcua::Answer<> check(const skill::ValueMap& parameters, Done<skill::CheckReport> done) const;
-    /// Sends GetExecution; `done` gets the record.
+    /// Sends GetExecution; `done` gets the record, or the server's not_found.
     opcua::Answer<> execution(const std::string& id, Done<skill::ExecutionRecord> done) const;
 
 private:

@@ -11,12 +11,14 @@
 
 namespace metier::client {
 
+/// Settings of an arm of another server.
 struct RemoteArmOptions {
-    /// Address of the server with the arm's PositionStreamSkill.
+    /// Address of the server with the arm's PositionStreamSkill: "opc.tcp://host:port".
     std::string url;
     /// Pause between attempts to connect to a lost server.
     std::chrono::milliseconds retry_interval{500};
-    std::optional<opcua::Credentials> security{};  ///< as opcua::ClientOptions::security
+    /// Identity and user, as opcua::ClientOptions::security; none: an open connection.
+    std::optional<opcua::Credentials> security{};
 };
 
 /// An arm of another OPC UA server. Its set-points are written to the position stream of that
@@ -36,6 +38,7 @@ public:
     /// Connects and reads the arm's description; waits.
     /// Errors: connection_lost, timeout; not_found if the server has no PositionStreamSkill or
     ///         publishes no Kinematics for it.
+    /// Threads: any but a server's; the result may be used on any.
     static Result<std::unique_ptr<RemoteArm>> connect(RemoteArmOptions options);
     /// Chain and limits, as the server published them at connect().
     virtual const opcua_skill::KinematicsData& kinematics() const noexcept = 0;
@@ -46,8 +49,10 @@ public:
 
     /// Reason why the arm cannot be used.
     struct Absence {
+        /// Moment of the loss on this machine's monotonic clock.
         SteadyTime since;
-        bool replaced = false;  ///< its server is back, with another arm or other limits
+        /// Whether its server is back, with another arm or other limits: connect() anew.
+        bool replaced = false;
     };
     /// Absence of the arm; nothing while it can be used. Threads: any.
     virtual std::optional<Absence> absence() const = 0;

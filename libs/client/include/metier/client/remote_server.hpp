@@ -16,15 +16,21 @@
 
 namespace metier::client {
 
+/// Settings of the connection to another server.
 struct RemoteServerOptions {
-    std::string url;   ///< "opc.tcp://host:port"
-    std::string name;  ///< name for messages; empty: the URL
+    /// Address: "opc.tcp://host:port".
+    std::string url;
+    /// Name for messages; empty: the URL.
+    std::string name;
+    /// Name of this client in the other server's sessions and refusals.
     std::string application_name = "metier composition";
     /// Silence after which the server drops this client's session, and does what OnOwnerLoss says
     /// with its executions; at least 2 s.
     std::chrono::milliseconds session_timeout{5'000};
-    std::chrono::milliseconds retry_interval{500};  ///< between attempts to connect again
-    std::optional<opcua::Credentials> security{};   ///< as opcua::ClientOptions::security
+    /// Pause between attempts to connect again, > 0.
+    std::chrono::milliseconds retry_interval{500};
+    /// Identity and user, as opcua::ClientOptions::security; none: an open connection.
+    std::optional<opcua::Credentials> security{};
     /// ApplicationUri of the component; it is sent with each start, for records. May be empty.
     std::string own_server{};
 };
@@ -33,7 +39,8 @@ class Connection;
 struct OpenSkill;
 class UsedSkillLink;
 
-/// A skill that was opened and has no used skill yet; moved from open() to usedSkill().
+/// A skill that was opened and has no used skill yet; moved from open() to usedSkill(). Its members
+/// are for RemoteServer.
 struct PendingUse {
     std::shared_ptr<UsedSkillLink> link;  // shared with what is on its way to the used skill
     std::shared_ptr<OpenSkill> skill;     // shared with the work that waits for the server
@@ -52,22 +59,26 @@ struct PendingUse {
 /// executor's. A thread of its own connects again.
 class RemoteServer {
 public:
+    /// Connects; waits for the server, once: if it does not answer, the error is returned.
     /// \param executor runs on the thread that owns the used skills
     /// Errors: connection_lost, timeout, access_denied, with the address.
     static Result<std::unique_ptr<RemoteServer>> connect(RemoteServerOptions options,
                                                          std::shared_ptr<skill::Executor> executor);
-    /// Destroy it after its used skills.
+    /// Ends connection and thread; waits. Destroy it after its used skills.
     ~RemoteServer();
 
+    /// Address as given to connect(); any thread.
     const std::string& url() const noexcept;
+    /// Name for messages; any thread.
     const std::string& name() const noexcept;
     /// Time since which a connection with all used skills is missing; nothing while there is one.
     /// Any thread.
     std::optional<SteadyTime> awaySince() const;
 
-    /// Client of this connection, for other requests before the first use().
+    /// Client of this connection, for other requests before the first use(); valid as long as this.
     opcua::Client& client();
-    /// All skills of the server.
+    /// Finds all skills of the server, as client::findSkills().
+    /// Errors: those of the server, connection_lost, timeout.
     Result<std::vector<client::SkillAddress>> skills();
     /// Opens a skill and makes a used skill for it.
     /// \param origin prefix of the execution ids of the used skill's user, up to a '~' or '/':

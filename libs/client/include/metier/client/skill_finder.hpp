@@ -9,32 +9,46 @@ namespace metier::client {
 
 /// Position of a skill in a server's address space.
 struct SkillAddress {
-    std::string name;          ///< BrowseName: "CartesianLinearMoveSkill"
-    std::string display_name;  ///< for people
+    /// BrowseName: "CartesianLinearMoveSkill". Control characters that the server sent are
+    /// replaced, as in all texts here.
+    std::string name;
+    /// Name for people.
+    std::string display_name;
+    /// Object of the skill, with the namespace index of this session.
     opcua::NodeId node;
+    /// Its type definition.
     opcua::NodeId type;
-    std::string type_name;  ///< BrowseName of its type: "CartesianLinearMoveSkillType"
+    /// BrowseName of its type: "CartesianLinearMoveSkillType".
+    std::string type_name;
     /// Objects on the path from the Objects folder to the skill, the nearest one last.
     struct Above {
+        /// BrowseName of the object.
         std::string name;
+        /// The object.
         opcua::NodeId node;
     };
+    /// All of them; empty for a skill right below the Objects folder.
     std::vector<Above> above;
 
     /// The controller of the skill: the object that has the folder `Skills`. Null if there is none.
+    /// Valid as long as this address is not changed.
     const Above* controller() const;
     /// BrowseName of the controller; empty if there is none.
     std::string controllerName() const;
 };
 
-/// Finds every object below the Objects folder whose type is ProgramStateMachineType or a subtype.
+/// Finds every object below the Objects folder whose type is ProgramStateMachineType or a subtype,
+/// down to 12 objects deep.
 ///
 /// Uses nothing but the address space; knows no robot and no maker.
-/// Errors: those of the server. Threads: any but the client's own; waits.
+/// Errors: those of the server, connection_lost, timeout. Threads: any but the client's own; waits.
 opcua::Answer<std::vector<SkillAddress>> findSkills(opcua::Client& client);
 
+/// A type in the chain of a skill's types.
 struct SkillType {
-    std::string name;  ///< BrowseName
+    /// BrowseName, such as "SkillType".
+    std::string name;
+    /// The ObjectType.
     opcua::NodeId node;
 };
 
@@ -42,9 +56,10 @@ struct SkillType {
 /// directly below ProgramStateMachineType. Errors and threads: as findSkills().
 opcua::Answer<std::vector<SkillType>> typeChain(opcua::Client& client, const SkillAddress& skill);
 
-/// Finds the skill of that name.
+/// Finds the skill of that name among findSkills().
 /// \param name a BrowseName; "Controller/BrowseName" if several controllers have such a skill
-/// Errors: not_found, with the existing names; invalid_argument if several match.
+/// Errors: not_found, with the existing names; invalid_argument if several match; those of
+///         findSkills(). Threads: as findSkills().
 opcua::Answer<SkillAddress> findSkill(opcua::Client& client, std::string_view name);
 
 }  // namespace metier::client

@@ -20,7 +20,11 @@
 
 namespace metier::client {
 
-/// One skill of a server, for a client that commands and watches it.
+/// One skill of a server, for a client that commands and watches it:
+///
+///     auto skill = findSkill(client, "JointPtpMoveSkill");
+///     auto arm = SkillHandle::open(client, *skill);
+///     auto result = arm->run({{"TargetJointPosition", joints}}, steady_clock::now() + 30s);
 ///
 /// Transitions arrive as events, so nothing polls. Errors of every call: those of the server, with
 /// the server's text (value, limit, unit) if it gives one; connection_lost; timeout.
@@ -31,11 +35,13 @@ namespace metier::client {
 /// outcome by GetExecution. Nothing is ever started or resumed a second time. After a restart of
 /// the server the skill is looked up again, by its name and controller.
 ///
-/// Threading: any thread but the client's own; calls of one handle one at a time. Must end before
-/// its Client.
+/// Threading: any thread but the client's own; calls of one handle one at a time. Each waits for
+/// the server, but those that return a reference or say otherwise. Must end before its Client.
 class SkillHandle {
 public:
-    /// Reads the skill's description and subscribes to its transitions. `client` must outlive it.
+    /// Reads the skill's description and subscribes to its transitions.
+    /// \param client must outlive the handle
+    /// Errors: those of the server, connection_lost, timeout.
     static opcua::Answer<SkillHandle> open(opcua::Client& client, SkillAddress address);
 
     SkillHandle(SkillHandle&&) noexcept;
@@ -47,29 +53,40 @@ public:
     /// Errors: not_found, if the server does not have the skill any more.
     opcua::Answer<> refresh();
 
+    /// Address of the skill; after a restart of the server the new one. Valid until refresh() finds
+    /// one.
     const SkillAddress& address() const noexcept;
-    /// Parameters of ParameterSet and of Options, with unit, range and the present value as
-    /// default.
+    /// Parameters of ParameterSet and of Options, with unit, range and the value at open() or the
+    /// last refresh() as default.
     const std::vector<skill::Field>& parameters() const noexcept;
+    /// Results of FinalResultData, with unit.
     const std::vector<skill::Field>& results() const noexcept;
 
-    /// Writes one parameter; Null sets it to its default.
-    /// Errors: not_found (unknown name, with the known names); the server's refusal.
+    /// Writes one parameter; Null sets it to its default. In Ready this binds the parameters to
+    /// this session, until Start or for 10 s.
+    /// \param value in the unit of the field; its type must be that of the field
+    /// Errors: not_found (unknown name, with the known names); the server's refusal: type_mismatch,
+    ///         out_of_range, locked, invalid_state.
     opcua::Answer<> set(std::string_view name, const skill::Value& value);
-    /// Writes a live parameter without waiting, with the time for which it is meant; for position
-    /// streams. `done` runs on the client's thread.
+    /// Writes a live parameter without waiting; for position streams.
+    /// \param meant_for time for which the value is meant, by this machine's clock; sent as
+    ///                  SourceTimestamp
+    /// \param done runs once, on the client's thread; not called if this returns an error
     opcua::Answer<> setAsync(std::string_view name, const skill::Value& value, UtcTime meant_for,
                              std::function<void(opcua::Answer<>)> done);
 
-    /// Calls Start. Running has been committed when this returns without an error.
+    /// Calls Start with the parameters that were set. Running has been committed when this returns
+    /// without an error.
     opcua::Answer<> start() { return call(skill::Method::start); }
-    /// Sets all parameters and starts, in one call.
+    /// Sets all parameters and starts, in one call. Running has been committed when this returns
+    /// without an error.
     /// \return the execution's id
-    /// Errors: not_supported, if the server's skill lacks StartWith.
+    /// Errors: not_supported, if the server's skill lacks StartWith; the server's refusal, see
+    ///         skill::Program::startWith().
     opcua::Answer<std::string> startWith(const skill::StartRequest& request);
     /// Whether the server supports named executions: startWith() and execution().
     bool knowsExecutions() const noexcept;
-    /// Whether startWith() sends the execution on whose behalf it starts.
+    /// Whether startWith() sends the execution on whose behalf it starts: the server keeps records.
     bool takesParents() const noexcept;
     /// Asks whether startWith() would succeed now; nothing moves.
     /// Errors: not_supported.
@@ -77,24 +94,33 @@ public:
     /// Record of an execution, also one of another session.
     /// Errors: not_found, not_supported.
     opcua::Answer<skill::ExecutionRecord> execution(const std::string& id);
+    /// Calls Suspend; the answer comes before standstill, see awaitRest().
     opcua::Answer<> suspend() { return call(skill::Method::suspend); }
+    /// Calls Resume. Running has been committed when this returns without an error.
     opcua::Answer<> resume() { return call(skill::Method::resume); }
+    /// Calls Halt; the answer comes before standstill, see awaitRest(). Allowed also while another
+    /// client has control.
     opcua::Answer<> halt() { return call(skill::Method::halt); }
-    /// Calls Reset, repeatedly for up to 1 s while the device is not done.
+    /// Calls Reset, repeatedly for up to 1 s while the device is not done. Ready has been committed
+    /// when this returns without an error.
     /// Errors: timeout, if it is not done then: it goes on, and another reset() returns its
-    /// outcome.
+    ///         outcome; device_fault, with the reason.
     opcua::Answer<> reset();
+    /// Calls a method without arguments: any but StartWith.
     opcua::Answer<> call(skill::Method method);
-    /// Whether this session may call the method now.
+    /// Whether this session may call the method now, by its UserExecutable attribute.
     opcua::Answer<bool> executable(skill::Method method);
 
+    /// Present state, read from the server. Errors: type_mismatch, if it is none of the four.
     opcua::Answer<skill::State> state();
-    /// FinalResultData of the last execution that finished.
+    /// FinalResultData of the last execution that finished, of any client; Null for a value that
+    /// the server does not have.
     opcua::Answer<skill::ValueMap> result();
-    /// Reason of the server's last refusal to this session, or of the present state.
+    /// Reason of the server's last refusal to this session, or of the present state; empty if the
+    /// server does not answer or publish one.
     std::string reasonText();
 
-    /// Waits until the skill is in the state `wanted`.
+    /// Waits until the skill is in the state `wanted`, by its transitions.
     /// Errors: timeout at the deadline; connection_lost.
     opcua::Answer<> awaitState(skill::State wanted, SteadyTime deadline);
     /// Waits until the skill is not Running, for example after Suspend or Halt; then its device
