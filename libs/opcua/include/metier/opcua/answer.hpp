@@ -15,15 +15,20 @@ namespace metier::opcua {
 /// `status` is the peer's own code where the peer refused, BadTimeout where it did not answer in
 /// time, and otherwise the code that the transport reported.
 struct Failure : Error {
+    /// StatusCode behind the Error.
     StatusCode status = status::kBadUnexpectedError;
     /// The peer's StatusCode for each input argument of a Method that it refused; often empty.
     std::vector<StatusCode> input_results;
     /// Fate of the request, as far as it is known.
     enum class Delivery {
-        answered,  ///< the peer answered, or no request was needed
-        not_sent,  ///< it never left this process: it has no effect, now or later
-        unknown,   ///< it was sent and no answer came: the peer may have carried it out
+        /// The peer answered, or no request was needed.
+        answered,
+        /// It never left this process: it has no effect, now or later.
+        not_sent,
+        /// It was sent and no answer came: the peer may have carried it out.
+        unknown,
     };
+    /// Whether the request may have had an effect.
     Delivery delivery = Delivery::answered;
 };
 
@@ -31,7 +36,8 @@ struct Failure : Error {
 template <typename T = void>
 using Answer = tl::expected<T, Failure>;
 
-/// Makes a failed Answer from a StatusCode; text "<doing>: BadOutOfRange".
+/// Makes a failed Answer from a StatusCode; text "<doing>: BadOutOfRange". Its delivery is
+/// `answered`.
 inline tl::unexpected<Failure> failed(StatusCode status, std::string_view doing) {
     return tl::unexpected<Failure>(Failure{errorFrom(status, doing), status, {}});
 }

@@ -25,24 +25,32 @@ class ClientCore;
 /// User name and password of a session. Over a connection without security the password travels as
 /// clear text, unless the server's policy for tokens encrypts it.
 struct UserName {
+    /// Name of a user of the server.
     std::string name;
+    /// Password in UTF-8.
     std::string password;
 };
 
 /// Settings of a Client.
 struct ClientOptions {
+    /// Name that servers show for this client, also as the name of its session.
     std::string application_name = "metier client";
+    /// ApplicationUri; not used with `security`.
     std::string application_uri = "urn:metier:client";
     std::optional<UserName> user{};  ///< none: anonymous
     /// Certificate of this client; none: connections without security. With it everything is signed
     /// and encrypted, the server's certificate must be trusted, and application_uri is taken from
     /// the certificate. A server's certificate that is not trusted is stored for a later decision.
     std::optional<Credentials> security{};
+    /// Longest time that connect() may take, > 0.
     std::chrono::milliseconds connect_timeout{5'000};
     /// Silence after which the server may drop this session. Well before that the client sends a
     /// request, and gives the connection up if there is no answer. At least 2 s.
     std::chrono::milliseconds session_timeout{30'000};
-    std::chrono::milliseconds call_timeout{5'000};  ///< for every call without a timeout of its own
+    /// Longest time for every call without a timeout of its own, > 0.
+    std::chrono::milliseconds call_timeout{5'000};
+    /// Interval at which the server is asked to publish notifications, > 0; metier's servers
+    /// publish events at once.
     std::chrono::milliseconds publishing_interval{100};
     /// Behaviour when the connection breaks; none: the connection is lost for good, make a new
     /// Client.
@@ -73,23 +81,31 @@ enum class AttributeId : std::uint32_t {
 
 /// An attribute to read.
 struct ReadItem {
+    /// Node of the attribute.
     NodeId node;
+    /// Attribute to read.
     AttributeId attribute = AttributeId::value;
 };
 
 /// A value to write.
 struct WriteItem {
+    /// Variable whose value is written.
     NodeId node;
+    /// Value; its type must be that of the Variable.
     Value value;
-    /// By the writer's clock; none: not sent, the server takes its own
+    /// SourceTimestamp, by the writer's clock; none: not sent, the server takes its own.
     std::optional<UtcTime> source_time{};
-    std::uint64_t boot = 0;  ///< as MethodCall::boot
+    /// Value of Client::boot() when the NodeId was looked up, as MethodCall::boot.
+    std::uint64_t boot = 0;
 };
 
 /// A Method to call, with its arguments.
 struct MethodCall {
+    /// Object on which the Method is called.
     NodeId object;
+    /// Method node, of the Object or of its type.
     NodeId method;
+    /// Input arguments, in order.
     std::vector<Value> inputs{};
     /// Value of Client::boot() when the NodeIds were looked up. If the server was started again
     /// since, the call is refused, as the NodeIds may name other nodes now. 0: sent in any case.
@@ -98,8 +114,11 @@ struct MethodCall {
 
 /// Answer to a Method call that was not refused.
 struct CallResult {
-    StatusCode status;                      ///< Good or Uncertain
-    std::vector<StatusCode> input_results;  ///< code for each argument; may be empty
+    /// Good or Uncertain.
+    StatusCode status;
+    /// Code for each input argument; may be empty.
+    std::vector<StatusCode> input_results;
+    /// Output arguments, in order; their number was not checked.
     std::vector<Value> outputs;
 };
 
@@ -108,15 +127,21 @@ struct BrowseQuery {
     using Direction = BrowseDirection;
 
     NodeId node;
-    NodeId reference_type = ids::kHierarchicalReferences;  ///< with its subtypes; null: all
+    /// Type of the references, with its subtypes; null: all.
+    NodeId reference_type = ids::kHierarchicalReferences;
+    /// Direction away from the node, or to it.
     Direction direction = Direction::forward;
-    std::vector<NodeClass> node_classes{};  ///< node classes of the targets; empty: all
-    std::uint32_t references_at_once = 0;   ///< per message, 0: as many as the server sends
+    /// Node classes of the targets; empty: all.
+    std::vector<NodeClass> node_classes{};
+    /// Largest number per message; 0: as many as the server sends.
+    std::uint32_t references_at_once = 0;
 };
 
 /// A path along hierarchical references.
 struct RelativePath {
+    /// Node at which the path begins.
     NodeId start;
+    /// BrowseNames on the way, at least one.
     std::vector<QualifiedName> names;
 };
 
@@ -126,8 +151,9 @@ struct EventFilter {
     /// "Transition"}, {0, "Number"}}; at least one. A server refuses a field that none of its event
     /// types has, and names it.
     std::vector<std::vector<QualifiedName>> fields;
-    std::optional<NodeId> of_type{};  ///< only events of this type and its subtypes
-    /// [events] that the server may keep for us; it may keep fewer
+    /// Type of the events, with its subtypes; none: all.
+    std::optional<NodeId> of_type{};
+    /// Number of events that the server may keep for us; it may keep fewer.
     std::uint32_t queue_size = 10'000;
 };
 
@@ -135,9 +161,12 @@ struct EventFilter {
 struct EventNotice {
     /// Kind of a notification to a subscriber of events.
     enum class Kind {
-        event,     ///< `fields` has a value per requested field, Null where the event has none
-        overflow,  ///< events were lost in the server's queue or on the way
-        ended,     ///< no further notification will come; `status` has the reason
+        /// An event: `fields` has a value per requested field, Null where the event has none.
+        event,
+        /// Events were lost in the server's queue or on the way.
+        overflow,
+        /// No further notification will come; `status` has the reason.
+        ended,
         /// The connection is lost, `status` has the reason; `resumed` or `ended` follows.
         interrupted,
         /// Events come again. Events of the time between follow if the server kept them for this
@@ -145,15 +174,20 @@ struct EventNotice {
         resumed,
     };
 
+    /// Kind of this notification.
     Kind kind = Kind::event;
+    /// Values in the order of EventFilter::fields; empty for the other kinds.
     std::vector<Value> fields;
+    /// Reason, for `ended` and `interrupted`.
     StatusCode status;
 };
 
 /// Settings of a subscription to a Variable.
 struct DataFilter {
-    std::chrono::milliseconds sampling_interval{100};  ///< 0: as fast as the server can
-    std::uint32_t queue_size = 1;                      ///< [values] kept between publications
+    /// Interval at which the server looks for changes; 0: as fast as it can.
+    std::chrono::milliseconds sampling_interval{100};
+    /// Number of values that the server keeps between publications.
+    std::uint32_t queue_size = 1;
 };
 
 /// Subscription to one node; it lasts as long as this object.
@@ -165,6 +199,7 @@ struct DataFilter {
 /// Threading: one owner; may be destroyed on any thread, in a callback too, and after its Client.
 class Subscription {
 public:
+    /// A subscription to nothing.
     Subscription() = default;
     ~Subscription();
     Subscription(Subscription&& other) noexcept;
@@ -217,12 +252,14 @@ public:
     /// Errors: invalid_state (from a callback).
     Answer<> close();
 
+    /// State of the connection.
     enum class State {
-        connected,
-        reconnecting,
-        lost,  ///< for good: whyLost()
-        closed,
+        connected,     ///< a session is active
+        reconnecting,  ///< broken; attempts go on, ClientOptions::reconnect
+        lost,          ///< for good: whyLost()
+        closed,        ///< by close()
     };
+    /// Present state; any thread, does not wait.
     State state() const noexcept;
     /// Reason why there is no connection, or why the last one was lost; none: no connection was
     /// lost yet.
@@ -247,20 +284,25 @@ public:
     /// Errors: the attribute's own StatusCode where Bad, such as not_found (BadNodeIdUnknown).
     Answer<Value> read(const NodeId& node, AttributeId attribute = AttributeId::value,
                        Timeout timeout = {});
-    /// One DataValue per item, in order, with its own StatusCode.
+    /// Reads attributes in one message; a server may refuse too many at once
+    /// (ServerLimits::nodes_per_read of ours). One DataValue per item, in order, with its own
+    /// StatusCode.
     Answer<std::vector<DataValue>> readMany(std::vector<ReadItem> items, Timeout timeout = {});
 
     /// Writes a Value.
+    /// \param source_time by the writer's clock; none: the server takes its own
     /// Errors: the node's own StatusCode where Bad, such as out_of_range or locked.
     Answer<> write(NodeId node, Value value, std::optional<UtcTime> source_time = {},
                    Timeout timeout = {});
-    /// One StatusCode per item, in order.
+    /// Writes values in one message; a server may refuse too many at once. One StatusCode per item,
+    /// in order.
     Answer<std::vector<StatusCode>> writeMany(std::vector<WriteItem> items, Timeout timeout = {});
 
     /// Calls a Method.
     /// Errors: the Method's own StatusCode where Bad, such as invalid_state; Failure::input_results
     /// has the codes of its arguments.
     Answer<CallResult> call(MethodCall method_call, Timeout timeout = {});
+    /// The same for a NodeId that was looked up in this run of the server.
     Answer<CallResult> call(NodeId object, NodeId method, std::vector<Value> inputs = {});
 
     /// Reads all selected references, in as many messages as needed. References to nodes of other
@@ -271,7 +313,7 @@ public:
     /// Errors: not_found (BadNoMatch; BadNodeIdUnknown for the start).
     Answer<NodeId> translate(const NodeId& start, std::vector<QualifiedName> names,
                              Timeout timeout = {});
-    /// An Answer per path, in order.
+    /// Looks up the nodes at the ends of paths; an Answer per path, in order.
     Answer<std::vector<Answer<NodeId>>> translateMany(std::vector<RelativePath> paths,
                                                       Timeout timeout = {});
 
@@ -281,7 +323,7 @@ public:
     /// Errors: not_found.
     Answer<std::uint16_t> namespaceIndex(std::string_view uri, Timeout timeout = {});
 
-    /// Whether this user may call the Method now.
+    /// Whether this user may call the Method now. Errors: not_found.
     Answer<bool> readUserExecutable(const NodeId& method, Timeout timeout = {});
 
     /// Writes without waiting. `done` gets the outcome exactly once, at the latest at the deadline,

@@ -10,8 +10,10 @@ namespace metier::opcua {
 
 /// Reconnection of a Client whose connection broke.
 struct ReconnectOptions {
-    std::chrono::milliseconds shortest_pause{200};   ///< before the first attempt
-    std::chrono::milliseconds longest_pause{2'000};  ///< the pauses double up to this value
+    /// Pause before the first attempt, > 0.
+    std::chrono::milliseconds shortest_pause{200};
+    /// Longest pause; the pauses double up to this value.
+    std::chrono::milliseconds longest_pause{2'000};
     /// Random part, 0 to 1, by which each pause is shortened at most, so that many clients of one
     /// server do not come back at the same time.
     double jitter = 0.25;
@@ -23,15 +25,21 @@ struct ReconnectOptions {
 /// Change of a Client's connection.
 struct ConnectionChange {
     enum class Kind {
-        lost,      ///< broken, or silent for too long; `why`. Attempts to reconnect follow
-        back,      ///< connected again, Subscriptions included
-        given_up,  ///< there is no connection and there will be none; `why`
+        /// Broken, or silent for too long; `why` has the reason. Attempts to reconnect follow.
+        lost,
+        /// Connected again, Subscriptions included.
+        back,
+        /// There is no connection and there will be none; `why` has the reason.
+        given_up,
     };
 
+    /// Kind of the change.
     Kind kind = Kind::lost;
-    UtcTime time{};  ///< by this machine's clock
-    Failure why{};   ///< reason, for lost and given_up
-    /// With `back`: the server has forgotten all; NodeIds may differ
+    /// Time of the change, by this machine's wall clock.
+    UtcTime time{};
+    /// Reason, for lost and given_up.
+    Failure why{};
+    /// With `back`: the server has forgotten all; NodeIds may differ, see Client::boot().
     bool server_restarted = false;
     /// With `back`: the session is the former one, with all that it owned. If not, the server
     /// treats the former session as gone, at the latest when it times out.

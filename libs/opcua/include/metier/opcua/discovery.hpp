@@ -18,13 +18,20 @@ namespace metier::opcua {
 
 /// One way to reach a server (OPC 10000-4, 7.14).
 struct EndpointDescription {
+    /// Protection of messages (MessageSecurityMode of OPC 10000-4).
     enum class SecurityMode { invalid = 0, none = 1, sign = 2, sign_and_encrypt = 3 };
+    /// Way in which a user proves who it is (UserTokenType of OPC 10000-4).
     enum class TokenType { anonymous = 0, user_name = 1, certificate = 2, issued_token = 3 };
 
+    /// Address for this endpoint: "opc.tcp://host:port".
     std::string url;
+    /// Protection of its messages.
     SecurityMode security_mode = SecurityMode::invalid;
-    std::string security_policy_uri;  ///< URI of the SecurityPolicy (OPC 10000-7)
-    std::vector<TokenType> tokens;    ///< ways in which a user may log in
+    /// URI of the SecurityPolicy (OPC 10000-7).
+    std::string security_policy_uri;
+    /// Ways in which a user may log in.
+    std::vector<TokenType> tokens;
+    /// Rank that the server gives to it, 0: not recommended.
     std::uint8_t security_level = 0;
 };
 
@@ -33,10 +40,15 @@ enum class ApplicationType { server = 0, client = 1, client_and_server = 2, disc
 
 /// A server that the asked server knows, itself included (OPC 10000-4, 7.2).
 struct ServerDescription {
+    /// Unique name of the running server.
     std::string application_uri;
+    /// Name of the product.
     std::string product_uri;
+    /// Name for people.
     LocalizedText application_name;
+    /// Kind of the application.
     ApplicationType type = ApplicationType::server;
+    /// Addresses at which it can be asked for its endpoints; may be empty.
     std::vector<std::string> discovery_urls;
 };
 
@@ -52,13 +64,20 @@ Answer<std::vector<ServerDescription>> findServers(
 /// Registration of a server at a discovery server (OPC 10000-4, 7.32).
 struct ServerRegistration {
     enum class Presence {
+        /// The server is there; renew the registration within the discovery server's time, often
+        /// some minutes.
         online,
-        offline,  ///< the registration is to be removed
+        /// The registration is to be removed.
+        offline,
     };
-    std::string application_uri;  ///< key of the server at the discovery server
+    /// ApplicationUri: key of the server at the discovery server.
+    std::string application_uri;
+    /// Name of the product.
     std::string product_uri = "urn:metier";
+    /// Name for people.
     std::string name;
-    std::vector<std::string> discovery_urls;  ///< addresses for clients, at least one
+    /// Addresses for clients, at least one.
+    std::vector<std::string> discovery_urls;
     /// For RegisterServer2 (OPC 10000-12, annex D): "DA", "NA".
     std::vector<std::string> capabilities{"NA"};
     Presence presence = Presence::online;

@@ -14,19 +14,27 @@ class ServerCore;  // of src/
 
 /// One occurrence of an event.
 struct Event {
-    NodeId source;               ///< SourceNode, an Object below Objects
-    std::string source_name;     ///< SourceName
-    UtcTime time;                ///< time of the occurrence
-    std::uint16_t severity = 0;  ///< 1 (least) .. 1000
+    /// Object on which it occurs, below Objects: SourceNode.
+    NodeId source;
+    /// Name of that Object: SourceName.
+    std::string source_name;
+    /// Time of the occurrence, by the server's wall clock.
+    UtcTime time;
+    /// Severity of OPC 10000-5, 1 (least) to 1000.
+    std::uint16_t severity = 0;
+    /// Text for people.
     LocalizedText message;
-    std::vector<Value> fields;  ///< in the order of the field list given to create()
+    /// Values of the type's own fields, in the order of the list given to create().
+    std::vector<Value> fields;
 };
 
 /// Readers of the fields of events. The stack sends an event to every subscriber; a session that
 /// may not read it gets Null in all fields, EventType included.
 enum class EventAudience {
+    /// Every subscriber.
     everybody,
-    auditors,  ///< sessions for which mayAudit()
+    /// Only sessions for which mayAudit().
+    auditors,
 };
 
 /// Raises events of one type.
@@ -43,6 +51,8 @@ public:
     /// Errors: not_found (type, or a field, named), invalid_argument (not an event type).
     static Result<EventEmitter> create(Server& server, const NodeId& type,
                                        const std::vector<BrowsePath>& fields);
+    /// The same for this library.
+    /// \param audience readers of the fields
     static Result<EventEmitter> create(ServerCore& core, const NodeId& type,
                                        const std::vector<BrowsePath>& fields,
                                        EventAudience audience = EventAudience::everybody);

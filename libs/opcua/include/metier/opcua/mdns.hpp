@@ -14,11 +14,16 @@ namespace metier::opcua {
 
 /// A server as announced by mDNS (OPC 10000-12, annex C): service type `_opcua-tcp._tcp`.
 struct MdnsService {
-    std::string name;  ///< instance name, cut to 63 bytes; a second one of that name gets a number
-    std::string host;  ///< IPv4 address or host name
+    /// Instance name, cut to 63 bytes; a second one of that name gets a number.
+    std::string name;
+    /// IPv4 address or host name of the server.
+    std::string host;
+    /// TCP port of the endpoint.
     std::uint16_t port = 0;
-    std::string path = "/";   ///< path of the endpoint: the TXT record `path`
-    std::string caps = "NA";  ///< capabilities: the TXT record `caps`
+    /// Path of the endpoint: the TXT record `path`.
+    std::string path = "/";
+    /// Capabilities, separated by commas: the TXT record `caps`.
+    std::string caps = "NA";
 };
 
 /// Announces a server through the Avahi daemon of this machine, whenever that is running.
@@ -29,7 +34,9 @@ struct MdnsService {
 /// second unless D-Bus hangs.
 class MdnsAnnouncer {
 public:
+    /// Begins to announce; does not wait, and nothing can fail.
     explicit MdnsAnnouncer(MdnsService service);
+    /// Withdraws the announcement.
     ~MdnsAnnouncer();
     MdnsAnnouncer(const MdnsAnnouncer&) = delete;
     MdnsAnnouncer& operator=(const MdnsAnnouncer&) = delete;

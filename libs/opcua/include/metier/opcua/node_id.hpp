@@ -16,6 +16,7 @@ namespace metier::opcua {
 
 /// Bytes without a meaning to OPC UA (OPC 10000-6, 5.2.2.7).
 struct ByteString {
+    /// Any number of bytes, also none.
     std::vector<std::uint8_t> bytes;
 
     friend bool operator==(const ByteString&, const ByteString&) = default;
@@ -24,6 +25,7 @@ struct ByteString {
 
 /// A 128-bit identifier in the four fields of OPC 10000-6, 5.1.3.
 struct Guid {
+    /// Fields in the order of their text: data1-data2-data3-data4.
     std::uint32_t data1 = 0;
     std::uint16_t data2 = 0;
     std::uint16_t data3 = 0;
@@ -39,16 +41,21 @@ struct Guid {
 /// Threading: a value type.
 class NodeId {
 public:
+    /// Number, text, Guid or bytes.
     using Identifier = std::variant<std::uint32_t, std::string, Guid, ByteString>;
 
     /// The null NodeId, i=0.
     NodeId() = default;
+    /// Numeric id: ns=2;i=5.
     NodeId(std::uint16_t namespace_index, std::uint32_t id)
         : namespace_index_(namespace_index), identifier_(id) {}
+    /// Text as id: ns=2;s=Name.
     NodeId(std::uint16_t namespace_index, std::string id)
         : namespace_index_(namespace_index), identifier_(std::move(id)) {}
+    /// Guid as id: ns=2;g=...
     NodeId(std::uint16_t namespace_index, Guid id)
         : namespace_index_(namespace_index), identifier_(id) {}
+    /// Bytes as id: ns=2;b=...
     NodeId(std::uint16_t namespace_index, ByteString id)
         : namespace_index_(namespace_index), identifier_(std::move(id)) {}
 
@@ -57,12 +64,15 @@ public:
     /// Errors: invalid_argument.
     static Result<NodeId> parse(std::string_view text);
 
+    /// Index in the namespace table of its server.
     std::uint16_t namespaceIndex() const noexcept { return namespace_index_; }
+    /// Id within the namespace; valid as long as this.
     const Identifier& identifier() const noexcept { return identifier_; }
     /// Whether it is a null id: i=0, an empty string, ... in namespace 0.
     bool isNull() const;
     /// Notation that parse() reads; text from the network is made printable.
     std::string toString() const;
+    /// Hash for containers; the same for equal ids of one process.
     std::size_t hash() const noexcept;
 
     friend bool operator==(const NodeId&, const NodeId&) = default;

@@ -16,14 +16,21 @@ namespace metier::opcua {
 
 /// Settings of a Registrar.
 struct RegistrarOptions {
-    /// Address of the discovery server: "opc.tcp://host:4840"
+    /// Address of the discovery server: "opc.tcp://host:4840".
     std::string discovery_url;
-    opcua::ServerRegistration server;              ///< server to register
-    std::chrono::milliseconds period{30'000};      ///< from one success to the next attempt, > 0
-    std::chrono::milliseconds pause{5'000};        ///< from a failure to the next attempt, > 0
-    std::chrono::milliseconds timeout{2'000};      ///< longest time that one registration may take
-    std::chrono::milliseconds farewell{500};       ///< longest time that the final removal may take
-    std::optional<opcua::Credentials> security{};  ///< as opcua::registerServer()
+    /// Server to register.
+    opcua::ServerRegistration server;
+    /// Pause from one success to the next attempt, > 0; well below the time after which the
+    /// discovery server forgets a server.
+    std::chrono::milliseconds period{30'000};
+    /// Pause from a failure to the next attempt, > 0.
+    std::chrono::milliseconds pause{5'000};
+    /// Longest time that one registration may take.
+    std::chrono::milliseconds timeout{2'000};
+    /// Longest time that the final removal may take.
+    std::chrono::milliseconds farewell{500};
+    /// Certificate and trusted discovery servers, as opcua::registerServer(); none: no security.
+    std::optional<opcua::Credentials> security{};
 };
 
 /// Keeps a server registered at one discovery server, and removes the registration at its end.
@@ -39,8 +46,10 @@ public:
                                                    const opcua::ServerRegistration& server,
                                                    std::chrono::milliseconds timeout)>;
 
+    /// Begins to register at once, on its own thread.
     /// \param use empty: opcua::registerServer(), with the security of the options
     explicit Registrar(RegistrarOptions options, Register use = {});
+    /// Removes the registration if there is one.
     ~Registrar();
     Registrar(const Registrar&) = delete;
     Registrar& operator=(const Registrar&) = delete;

@@ -11,15 +11,20 @@ namespace metier::opcua {
 /// A server that a discovery server or mDNS has listed. Nobody has connected to it yet: it may be
 /// gone.
 struct FoundServer {
-    std::string url;          ///< "opc.tcp://host:port"
-    std::string name;         ///< application name, printable; may be empty
-    std::string reported_by;  ///< source: address of a discovery server, or "mDNS"
+    /// Address that this client can use: "opc.tcp://host:port".
+    std::string url;
+    /// Application name, printable; may be empty.
+    std::string name;
+    /// Source: address of a discovery server, or "mDNS".
+    std::string reported_by;
 };
 
 /// Result of a search.
 struct Sighting {
-    std::vector<FoundServer> servers;  ///< each address once, sorted by name and address
-    std::vector<Error> problems;       ///< one for each discovery server that did not answer
+    /// Servers, each address once, sorted by name and address.
+    std::vector<FoundServer> servers;
+    /// Errors, one for each discovery server that did not answer, with its address.
+    std::vector<Error> problems;
 };
 
 /// Adds the servers whose address is not in the list yet; keeps the order by name and address.
@@ -36,6 +41,7 @@ enum class Mdns { left_out, asked };
 
 /// Asks discovery servers and, if wanted, mDNS at the same time. A missing Avahi daemon is not
 /// reported as a problem.
+/// Threads: any; waits about 3 s at most.
 Sighting searchServers(const std::vector<std::string>& discovery_urls, Mdns mdns);
 
 }  // namespace metier::opcua

@@ -29,8 +29,10 @@ namespace metier::opcua {
 
 /// Time at which the notifications of an event leave the server.
 enum class EventPublishing {
-    at_once,      ///< right after it was raised, whatever publishing interval a client asked for
-    at_interval,  ///< strictly at the Subscription's publishing interval
+    /// Right after it was raised, whatever publishing interval a client asked for.
+    at_once,
+    /// Strictly at the Subscription's publishing interval.
+    at_interval,
 };
 
 /// Limits for the clients of a server; a request beyond them is refused or gets less.
@@ -40,29 +42,46 @@ struct ServerLimits {
     std::uint16_t secure_channels = 150;
     /// Longest time that a connection may be without a Session.
     std::chrono::milliseconds handshake_timeout{10'000};
-    std::uint16_t sessions = 100;  ///< at the same time, of all clients
+    /// Sessions at the same time, of all clients.
+    std::uint16_t sessions = 100;
     /// Sessions of one application, known by its certificate; only for a closed server.
     std::uint16_t sessions_per_application = 10;
-    std::chrono::milliseconds session_timeout{60'000};  ///< longest that a client gets
-    std::uint32_t message_size = 1U << 20U;             ///< [byte]
+    /// Longest session time-out that a client gets.
+    std::chrono::milliseconds session_timeout{60'000};
+    /// Largest message [byte].
+    std::uint32_t message_size = 1U << 20U;
+    /// Largest number of chunks of a message.
     std::uint32_t chunks_per_message = 32;
+    /// Subscriptions at the same time, of all sessions.
     std::uint32_t subscriptions = 1000;
+    /// Subscriptions of one session.
     std::uint32_t subscriptions_per_session = 10;
+    /// MonitoredItems at the same time, of all sessions.
     std::uint32_t monitored_items = 10'000;
+    /// MonitoredItems of one Subscription.
     std::uint32_t monitored_items_per_subscription = 1'000;
-    std::uint32_t event_queue = 10'000;                    ///< [events] per MonitoredItem
-    std::chrono::milliseconds min_publishing_interval{5};  ///< the stack can do 5 ms
-    std::chrono::milliseconds min_sampling_interval{5};    ///< the stack can do 5 ms
+    /// Largest number of events that wait in one MonitoredItem.
+    std::uint32_t event_queue = 10'000;
+    /// Shortest publishing interval that a client gets; the stack can do 5 ms.
+    std::chrono::milliseconds min_publishing_interval{5};
+    /// Shortest sampling interval that a client gets; the stack can do 5 ms.
+    std::chrono::milliseconds min_sampling_interval{5};
+    /// Longest publishing interval that a client gets.
     std::chrono::milliseconds max_publishing_interval{10'000};
+    /// Number of publishing intervals that a Subscription waits for its client.
     std::uint32_t lifetime_count =
         600;  ///< publishing intervals a Subscription waits for its client
+    /// Publish requests of one session that wait for notifications.
     std::uint32_t publish_requests_per_session = 20;
+    /// Sent notifications that a Subscription keeps until they are acknowledged.
     std::uint32_t retransmission_queue = 20;
+    /// Operations in one request.
     std::uint32_t nodes_per_read = 1'000;
     std::uint32_t nodes_per_write = 200;
     std::uint32_t nodes_per_call = 10;
     std::uint32_t nodes_per_browse = 1'000;
-    std::uint32_t references_per_node = 1'000;  ///< of one Browse answer
+    /// References of a node in one Browse answer; BrowseNext gives the next ones.
+    std::uint32_t references_per_node = 1'000;
 };
 
 /// Makes a server a Local Discovery Server (OPC 10000-12).
@@ -74,10 +93,14 @@ struct DiscoveryService {
 
 /// Settings of a Server.
 struct ServerOptions {
+    /// Name for people.
     std::string application_name = "metier";
+    /// ApplicationUri, unique among servers; with security it must be that of the certificate.
     std::string application_uri = "urn:metier:server";
-    std::uint16_t port = 4840;  ///< 0: a free one
-    /// Without security only loopback addresses are allowed.
+    /// TCP port; 0: a free one, see Server::port().
+    std::uint16_t port = 4840;
+    /// Addresses on which it listens; the first one is that of endpointUrl(). Without security only
+    /// loopback addresses are allowed.
     std::vector<std::string> bind_addresses{"127.0.0.1"};
     /// Security of a closed server; none: no encryption and anonymous users, for a lab.
     std::optional<ServerSecurity> security{};
@@ -87,12 +110,14 @@ struct ServerOptions {
     std::vector<std::string> nodesets;
     /// URIs of further namespaces, in the order of their indices.
     std::vector<std::string> namespaces;
+    /// Time at which notifications of events are sent.
     EventPublishing event_publishing = EventPublishing::at_once;
     /// Called for each audit record: actions and refused attempts of sessions, and actions of the
     /// server; may be empty. Runs on the server's thread and must not wait.
     std::function<void(const AuditRecord&)> on_audit{};
-    /// Lets other servers register here; FindServers lists them.
+    /// Lets other servers register here; FindServers lists them. None: nobody can register.
     std::optional<DiscoveryService> discovery{};
+    /// Limits for clients.
     ServerLimits limits;
     /// Shared with its other users, as spdlog does; null: spdlog's default logger.
     std::shared_ptr<spdlog::logger> logger;
@@ -100,12 +125,18 @@ struct ServerOptions {
 
 /// Figures of a server's load; at most 100 ms old while its thread works.
 struct ServerStatistics {
+    /// Open connections, with or without a session.
     std::size_t connections = 0;
+    /// Sessions, activated or not.
     std::size_t sessions = 0;
-    std::size_t queued_bytes = 0;  ///< [byte] waiting for peers to read
-    std::size_t waiting_work = 0;  ///< posted to the server's thread and not begun
+    /// Bytes that wait for peers to read.
+    std::size_t queued_bytes = 0;
+    /// Pieces of work that were posted to the server's thread and have not begun.
+    std::size_t waiting_work = 0;
+    /// Connections that were refused or closed for want of a free place, since the start.
     std::uint64_t refused_connections = 0;
-    std::uint64_t cut_peers = 0;  ///< closed, since they did not read what was sent to them
+    /// Connections that were closed, since their peer did not read what was sent to it.
+    std::uint64_t cut_peers = 0;
 };
 
 /// A timer that is cancelled at the end of its life.
@@ -113,6 +144,7 @@ struct ServerStatistics {
 /// Threading: the server's thread. May outlive the Server.
 class TimerHandle {
 public:
+    /// A handle of no timer.
     TimerHandle() = default;
     explicit TimerHandle(std::function<void()> cancel) : cancel_(std::move(cancel)) {}
     ~TimerHandle() { cancel(); }
@@ -139,14 +171,20 @@ using ResultOf = typename AsResult<std::invoke_result_t<Work&>>::Type;
 
 /// An OPC UA server. Without security it logs a warning when it starts.
 ///
+///     auto server = Server::create({.port = 0, .nodesets = {"metier"}});
+///     (*server)->nodes().addVariable({...});  // before start(): the creating thread
+///     (*server)->start();
+///
 /// Threading: between start() and stop() one thread of its own does all work and calls all
 /// handlers. Before and after that, the thread that created it takes its place. Each function says
 /// which thread may call it.
 class Server {
 public:
+    /// Makes the server and loads its NodeSets; nothing is open yet. Takes some 100 ms with the
+    /// skill model.
     /// Errors: invalid_argument (an address that is not loopback, a limit of zero, a certificate
-    /// for another ApplicationUri), resource_unavailable (the trust folder), not_found (NodeSet),
-    /// internal (the stack).
+    ///         for another ApplicationUri), resource_unavailable (the trust folder), not_found
+    ///         (NodeSet), internal (the stack).
     static Result<std::unique_ptr<Server>> create(ServerOptions options);
     /// Stops it.
     ~Server();
@@ -162,6 +200,7 @@ public:
 
     /// `opc.tcp://127.0.0.1:<port>` with the real port; empty before start(). Any thread.
     std::string endpointUrl() const;
+    /// Port on which it listens; 0 before start(). Any thread.
     std::uint16_t port() const;
 
     /// Runs work on the server's thread, in the order of posting. Any thread; does not wait.
@@ -176,6 +215,7 @@ public:
     ResultOf<Work> call(Work work, std::chrono::milliseconds deadline = std::chrono::seconds(5));
 
     /// Runs work once, unless the handle is cancelled or destroyed before. Server's thread.
+    /// \param delay by the monotonic clock; 0 or less: as soon as possible, not inside this call
     [[nodiscard]] TimerHandle after(std::chrono::nanoseconds delay, std::function<void()> work);
 
     /// Calls the handler when a session has ended: closed, timed out or ended by stop(). Handlers
@@ -198,7 +238,8 @@ public:
 
     /// Time at which the server's thread last worked; it does at least every 100 ms. Any thread.
     SteadyTime lastTick() const noexcept;
-    /// Any thread.
+    /// Whether the caller runs on the server's thread; before start() and after stop() the creating
+    /// one counts. Any thread.
     bool onServerThread() const noexcept;
     /// Any thread; does not wait for the server's.
     ServerStatistics statistics() const;

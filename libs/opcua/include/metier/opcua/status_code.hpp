@@ -13,11 +13,15 @@ namespace metier::opcua {
 /// Threading: a value type.
 class StatusCode {
 public:
+    /// Good.
     constexpr StatusCode() = default;
     explicit constexpr StatusCode(std::uint32_t value) : value_(value) {}
 
+    /// All 32 bits, info bits such as Overflow included.
     constexpr std::uint32_t value() const noexcept { return value_; }
+    /// Whether the severity is Good; Uncertain is neither Good nor Bad.
     constexpr bool isGood() const noexcept { return (value_ >> 30U) == 0; }
+    /// Whether the severity is Bad.
     constexpr bool isBad() const noexcept { return (value_ >> 31U) != 0; }
     /// Symbol of the standard, `BadOutOfRange`; for an unknown code its hexadecimal value.
     std::string name() const;
@@ -69,12 +73,13 @@ inline constexpr StatusCode kBadIdentityTokenInvalid{0x80200000};
 inline constexpr StatusCode kBadWriteNotSupported{0x80730000};
 }  // namespace status
 
-/// StatusCode that a peer gets for an error of this project: the only table of error codes.
+/// StatusCode that a peer gets for an error of this project: the only table of error codes. Several
+/// errors share one code: unreachable and limit_violated are BadOutOfRange, too.
+/// Threads of these functions: any; pure.
 StatusCode statusFrom(Errc code) noexcept;
 
-/// Error code for a peer's StatusCode, chosen by what a program can do about it. Codes without an
-/// entry of their own become connection_lost for broken transports and sessions, otherwise
-/// internal.
+/// Error code for a peer's StatusCode, chosen by what a program can do about it. Codes of broken
+/// transports and sessions become connection_lost, those without an entry of their own internal.
 Errc errcFrom(StatusCode code) noexcept;
 
 /// Error for a refusal of the stack or of a peer; text "<doing>: BadOutOfRange".

@@ -15,7 +15,9 @@ using ThreeDVector = metier::Vector3;
 
 /// A name that is unique among siblings; the index belongs to one server's namespace table.
 struct QualifiedName {
+    /// Index of its namespace.
     std::uint16_t namespace_index = 0;
+    /// Name without the index.
     std::string name;
 
     /// Text `2:Skills`; text from the network is made printable.
@@ -26,7 +28,9 @@ struct QualifiedName {
 
 /// Text for people; the locale is empty or an RFC 3066 name such as `en`.
 struct LocalizedText {
+    /// Language; empty: not known.
     std::string locale;
+    /// Text in UTF-8.
     std::string text;
 
     friend bool operator==(const LocalizedText&, const LocalizedText&) = default;
@@ -34,9 +38,13 @@ struct LocalizedText {
 
 /// An engineering unit (OPC 10000-8, 5.6.3), usually of UNECE Recommendation 20.
 struct EuInformation {
+    /// Table of the unit; for UNECE "http://www.opcfoundation.org/UA/units/un/cefact".
     std::string namespace_uri;
+    /// Number in that table; -1: none.
     std::int32_t unit_id = -1;
+    /// Symbol: "m/s".
     LocalizedText display_name{};
+    /// Name: "metre per second".
     LocalizedText description{};
 
     friend bool operator==(const EuInformation&, const EuInformation&) = default;
@@ -54,19 +62,27 @@ struct ThreeDCartesianCoordinates {
 
 /// The orientation in a ThreeDFrame [rad].
 struct ThreeDOrientation {
-    double a = 0.0;  ///< rotation about x
-    double b = 0.0;  ///< rotation about y
-    double c = 0.0;  ///< rotation about z; R = Rz(c) Ry(b) Rx(a)
+    /// Rotation about x.
+    double a = 0.0;
+    /// Rotation about y.
+    double b = 0.0;
+    /// Rotation about z; R = Rz(c) Ry(b) Rx(a).
+    double c = 0.0;
 
     friend bool operator==(const ThreeDOrientation&, const ThreeDOrientation&) = default;
 };
 
 /// One input or output argument of a Method (OPC 10000-3, 8.6).
 struct Argument {
+    /// Name within its Method.
     std::string name;
+    /// Data type of the value.
     NodeId data_type;
-    std::int32_t value_rank = -1;  ///< -1 scalar, 1 one-dimensional array
+    /// Number of dimensions: -1 scalar, 1 one-dimensional array.
+    std::int32_t value_rank = -1;
+    /// Length of each dimension, 0: any; empty: not fixed.
     std::vector<std::uint32_t> array_dimensions{};
+    /// Text for people.
     LocalizedText description{};
 
     friend bool operator==(const Argument&, const Argument&) = default;
@@ -87,12 +103,17 @@ enum class NodeClass {
 
 /// A reference of a node and its target.
 struct Reference {
+    /// Type of the reference.
     NodeId type;
+    /// Node at its other end.
     NodeId target;
+    /// Names of the target.
     QualifiedName browse_name;
     LocalizedText display_name{};
-    NodeClass node_class = NodeClass::unspecified;  ///< class of the target
-    NodeId type_definition;                         ///< for Objects and Variables only
+    /// Class of the target.
+    NodeClass node_class = NodeClass::unspecified;
+    /// Type definition of the target, for Objects and Variables only; else null.
+    NodeId type_definition;
 };
 
 /// Direction in which references are followed: away from a node, or to it.

@@ -42,6 +42,9 @@ concept ValueType = ScalarType<T> || IsVectorOfScalars<T>::value;
 
 /// Any value of a Variable, argument or event field; owns what it holds.
 ///
+///     const auto joints = Value::of(std::vector<double>{0.0, -1.57});
+///     const auto numbers = joints.as<std::vector<double>>();  // a Result
+///
 /// Structures that this program does not know keep their encoded form: they can be copied,
 /// compared, passed on and printed, but not taken apart.
 ///
@@ -57,11 +60,13 @@ public:
     Value& operator=(Value&& other) noexcept;
 
     template <ValueType T>
+    /// A scalar, or a one-dimensional array of a std::vector.
     static Value of(const T& value);
     /// An array of values of any types (BaseDataType[]).
     static Value ofMixed(const std::vector<Value>& values);
     /// A Double matrix; the rows have the same length. Null without a row.
     static Value ofRows(const std::vector<std::vector<double>>& rows);
+    /// A String.
     static Value of(std::string_view value);
     static Value of(const char* value) { return of(std::string_view(value)); }
 
@@ -76,7 +81,9 @@ public:
     /// Errors: type_mismatch.
     Result<std::vector<std::vector<double>>> asRows() const;
 
+    /// Whether it is Null.
     bool isEmpty() const noexcept;
+    /// Whether it is an array, of one or more dimensions; also one without elements.
     bool isArray() const noexcept;
     /// Number of elements of an array, 1 for a scalar, 0 when empty.
     std::size_t size() const noexcept;
@@ -104,7 +111,9 @@ private:
 
 /// An entry of a list of named values.
 struct KeyValue {
+    /// Name of the entry.
     QualifiedName key;
+    /// Its value; Null is allowed.
     Value value;
 
     friend bool operator==(const KeyValue&, const KeyValue&) = default;
@@ -112,16 +121,22 @@ struct KeyValue {
 
 /// Creator and last call of a Program (ProgramDiagnostic2DataType of OPC 10000-10, 5.2.8).
 struct ProgramDiagnostic {
+    /// Session that made the Program; null: the server.
     NodeId create_session_id;
+    /// Application name of that session.
     std::string create_client_name;
+    /// Times by the server's wall clock.
     UtcTime invocation_creation_time{};
     UtcTime last_transition_time{};
+    /// Name of the Method that was called last, and the session that called it.
     std::string last_method_call;
     NodeId last_method_session_id;
+    /// Description and values of its arguments and results.
     std::vector<Argument> last_method_input_arguments;
     std::vector<Argument> last_method_output_arguments;
     std::vector<Value> last_method_input_values;
     std::vector<Value> last_method_output_values;
+    /// Time and outcome of the call; refused calls count, too.
     UtcTime last_method_call_time{};
     StatusCode last_method_return_status;
 
@@ -130,10 +145,14 @@ struct ProgramDiagnostic {
 
 /// A value with its status and times.
 struct DataValue {
+    /// Null if there is none, such as with a Bad status.
     Value value;
+    /// Quality of the value.
     StatusCode status{};
-    UtcTime source_time{};  ///< time at which it was true; UtcTime{} if not given
-    UtcTime server_time{};  ///< time at which the server got it; UtcTime{} if not given
+    /// Time at which it was true, by its source's clock; UtcTime{} if not given.
+    UtcTime source_time{};
+    /// Time at which the server got it, by the server's clock; UtcTime{} if not given.
+    UtcTime server_time{};
 
     friend bool operator==(const DataValue&, const DataValue&) = default;
 };
