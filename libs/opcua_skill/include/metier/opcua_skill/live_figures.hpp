@@ -19,23 +19,33 @@ namespace metier::opcua_skill {
 
 /// Wrench at the flange, in the axes of the sensor.
 struct FlangeWrench {
-    std::array<double, 3> force{};   ///< [N]
-    std::array<double, 3> torque{};  ///< [N m]
+    /// Force along x, y, z [N].
+    std::array<double, 3> force{};
+    /// Torque about x, y, z [N m].
+    std::array<double, 3> torque{};
 };
 
 /// Timing of a position stream's set-points, of the stream that runs or else of the last one.
 struct StreamFigures {
-    double lag = 0.0;           ///< time by which the newest one waits longer than PlayOutDelay [s]
-    double largest_lag = 0.0;   ///< since the stream's start [s]
-    double clock_step = 0.0;    ///< largest step of the client's clock; negative: back [s]
-    std::uint64_t refused = 0;  ///< refused when they were written
-    std::uint64_t dropped = 0;  ///< dropped, since their time was not after that of the one before
+    /// Time by which the newest set-point waits longer than PlayOutDelay [s].
+    double lag = 0.0;
+    /// Largest lag since the stream's start [s].
+    double largest_lag = 0.0;
+    /// Largest step of the client's clock [s]; negative: back.
+    double clock_step = 0.0;
+    /// Number of set-points that were refused when they were written.
+    std::uint64_t refused = 0;
+    /// Number of set-points that were dropped, since their time was not after that of the one
+    /// before.
+    std::uint64_t dropped = 0;
 };
 
 /// Stop of an arm, if it were halted now.
 struct StoppingFigures {
-    double time = 0.0;      ///< time until it stands [s]
-    double distance = 0.0;  ///< way of its tool frame [m]
+    /// Time until it stands [s].
+    double time = 0.0;
+    /// Way of its tool frame [m].
+    double distance = 0.0;
 };
 
 /// Live values of an arm besides its KinematicsState. An empty function: the arm does not have the
@@ -55,26 +65,34 @@ struct ArmFigures {
     std::function<StreamFigures()> stream{};
 };
 
-/// Adds the Variables of an arm's live values.
+/// Adds the Variables of an arm's live values. The functions must stay valid until the server has
+/// stopped.
 /// \param kinematics Kinematics object of the arm's motion device
 Result<void> publishArmFigures(opcua::AddressSpace& nodes, const opcua::NodeId& kinematics,
                                const ArmFigures& figures);
 
 /// Live values of a gripper.
 struct GripperFigures {
-    double width = 0.0;      ///< between the jaws [m]
-    double force = 0.0;      ///< on the part [N]
-    bool part_held = false;  ///< whether the jaws hold a part
+    /// Distance between the jaws [m].
+    double width = 0.0;
+    /// Force on the part [N].
+    double force = 0.0;
+    /// Whether the jaws hold a part.
+    bool part_held = false;
 };
 
+/// Properties of a gripper that do not change.
 struct GripperKind {
-    double stroke = 0.0;          ///< largest width [m]
-    bool measures_force = false;  ///< false: no Variable GripperForce is added
+    /// Largest width [m].
+    double stroke = 0.0;
+    /// Whether the gripper reports its force; false: no Variable GripperForce is added.
+    bool measures_force = false;
 };
 
 /// Adds GripperStroke, GripperWidth, PartHeld and, if the gripper measures it, GripperForce.
 /// PartHeld shows whether the gripper holds a part, also between the executions of its skills.
-/// \param parent the object that the gripper's skills belong to
+/// \param parent  the object that the gripper's skills belong to
+/// \param figures must stay valid until the server has stopped; without a result: no connection
 Result<void> publishGripperFigures(opcua::AddressSpace& nodes, const opcua::NodeId& parent,
                                    const GripperKind& kind,
                                    std::function<std::optional<GripperFigures>()> figures);

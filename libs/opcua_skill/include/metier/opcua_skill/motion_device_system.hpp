@@ -12,26 +12,36 @@ namespace metier::opcua_skill {
 
 /// Objects of one robot in the address space that clients look for.
 struct MotionDeviceSystem {
-    opcua::NodeId system;         ///< below DeviceSet
-    opcua::NodeId motion_device;  ///< a SkillMotionDeviceType
-    opcua::NodeId controller;     ///< with ISkillControllerType
-    opcua::NodeId skills;         ///< folder of the controller's skills
-    opcua::NodeId kinematics;     ///< of the motion device
+    /// MotionDeviceSystem (OPC 40010-1), below DeviceSet.
+    opcua::NodeId system;
+    /// Arm: a SkillMotionDeviceType.
+    opcua::NodeId motion_device;
+    /// Controller with ISkillControllerType.
+    opcua::NodeId controller;
+    /// Folder of the controller's skills.
+    opcua::NodeId skills;
+    /// Object Kinematics of the motion device.
+    opcua::NodeId kinematics;
 };
 
-/// Finds the one motion device system of a server's NodeSets.
+/// Finds the motion device system of a server's NodeSets; the first one if there are several.
 /// Threads, as for all functions here: those of AddressSpace.
 /// Errors: not_found, naming what is missing.
 Result<MotionDeviceSystem> findMotionDeviceSystem(const opcua::AddressSpace& nodes);
 
 /// Content of a motion device system that is made at run time.
 struct MotionDeviceSystemSpec {
-    std::string name;  ///< "Ur5Moves": BrowseName of the system, and prefix of all others
+    /// BrowseName of the system and prefix of all others: "Ur5Moves".
+    std::string name;
+    /// Text for people.
     std::string description;
+    /// Manufacturer and Model of arm and controller.
     std::string manufacturer;
     std::string model;
-    std::vector<std::string> axis_names;  ///< axis 1 first
-    std::uint16_t namespace_index = 1;    ///< namespace of the new NodeIds
+    /// DisplayNames of the axes, axis 1 first; one AxisType is made for each.
+    std::vector<std::string> axis_names;
+    /// Namespace of the new NodeIds; 1 is the server's own.
+    std::uint16_t namespace_index = 1;
 };
 
 /// Makes a motion device system below DeviceSet: one motion device with Kinematics and axes, one
@@ -41,8 +51,10 @@ struct MotionDeviceSystemSpec {
 Result<MotionDeviceSystem> publishMotionDeviceSystem(opcua::AddressSpace& nodes,
                                                      const MotionDeviceSystemSpec& spec);
 
-/// Sets the fixed values of the arm, and lets clients read its live state. `state` is called on the
-/// server's thread whenever a client reads one of the live values; it must return at once.
+/// Sets the fixed values of the arm, and lets clients read its live state.
+/// \param state called on the server's thread whenever a client reads one of the live values, and
+///              at each sampling; it must return at once and stay valid until the server has
+///              stopped
 /// Errors: invalid_argument (lists of different lengths), not_found.
 Result<void> publishKinematics(opcua::AddressSpace& nodes, const MotionDeviceSystem& system,
                                const KinematicsData& data, std::function<KinematicsState()> state);

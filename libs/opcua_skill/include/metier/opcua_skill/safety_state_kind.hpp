@@ -9,15 +9,22 @@ namespace metier::opcua_skill {
 /// Safety state of a controller as published, with the numbers of the Metier NodeSet's
 /// SafetyStateKind. Observed, never commanded.
 enum class SafetyStateKind : std::int32_t {
-    unknown = 0,  ///< also of a device without a connection
+    /// Not known; also of a device without a connection.
+    unknown = 0,
+    /// The arm may move.
     normal = 1,
-    reduced = 2,  ///< the arm may move within reduced limits
+    /// The arm may move within reduced limits.
+    reduced = 2,
+    /// The controller stopped the arm; a Reset ends it.
     protective_stop = 3,
+    /// The button is pressed.
     emergency_stop = 4,
+    /// The controller needs a person.
     fault = 5,
 };
 
 /// Name of the value as in the NodeSet, "ProtectiveStop"; "Unknown" for a number that is none.
+/// Threads: any; pure.
 constexpr std::string_view nameOf(SafetyStateKind kind) noexcept {
     constexpr std::array<std::string_view, 6> kNames{"Unknown",        "Normal",        "Reduced",
                                                      "ProtectiveStop", "EmergencyStop", "Fault"};

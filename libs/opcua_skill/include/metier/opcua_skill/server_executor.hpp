@@ -12,7 +12,9 @@ namespace metier::opcua_skill {
 
 /// Executor on the thread of an OPC UA server, for the Programs of that server.
 ///
-/// Shared with Executions, which may outlive the server: after close() it drops posted work.
+/// Shared with Executions, which may outlive the server: after close() it drops posted work, and
+/// after() gives an empty Timer.
+/// Threading: as skill::Executor; a short lock guards the server.
 class ServerExecutor final : public skill::Executor {
 public:
     /// `server` must live until close().

@@ -10,17 +10,19 @@ namespace metier::opcua_skill {
 
 /// A device that publishes skills by itself, such as a gripper.
 struct SkillController {
-    opcua::NodeId controller;  ///< below DeviceSet, with ISkillControllerType
-    opcua::NodeId skills;      ///< folder of its skills
+    /// Object below DeviceSet, with ISkillControllerType.
+    opcua::NodeId controller;
+    /// Folder of its skills.
+    opcua::NodeId skills;
 };
 
-/// Finds the only such device of a server's NodeSets.
-/// Threads: those of AddressSpace.
+/// Finds such a device among a server's NodeSets: the first object below DeviceSet that has skills.
+/// Threads, as for all functions here: those of AddressSpace.
 /// Errors: not_found.
 Result<SkillController> findSkillController(const opcua::AddressSpace& nodes);
 
-/// Makes an object a controller of skills: adds both interfaces, the lease, and a folder for
-/// skills.
+/// Makes an object a controller of skills: adds both interfaces, the lease, a DI Lock, and a folder
+/// for skills. Serve the lease by SkillServer::serveControl().
 /// \return the folder
 /// Errors: already_exists; not_found (NodeSets device and metier are needed).
 Result<opcua::NodeId> makeSkillController(opcua::AddressSpace& nodes,

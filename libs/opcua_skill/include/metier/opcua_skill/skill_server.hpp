@@ -18,13 +18,19 @@ namespace metier::opcua_skill {
 
 /// Naming of the nodes below a published skill.
 enum class NodeStyle {
-    readable,  ///< string ids that are paths, `<skills>/<name>/ParameterSet/...`; descriptions
-    compact,   ///< for thousands of skills, at 40 % of the memory: numeric ids, no descriptions
-               ///< below the skill, ProgramDiagnostic as one value without components,
-               ///< and the methods of Part 10 only
+    /// String ids that are paths, `<skills>/<name>/ParameterSet/...`; descriptions.
+    readable,
+    /// For thousands of skills, at 40 % of the memory: numeric ids, no descriptions below the
+    /// skill, ProgramDiagnostic as one value without components, and the methods of Part 10 only.
+    compact,
 };
 
 /// The skills of one OPC UA server: each is a Program served at the nodes of a skill object.
+///
+///     auto skills = SkillServer::create(*server, clock);
+///     auto system = findMotionDeviceSystem(server->nodes());
+///     (*skills)->publish(system->skills, std::make_unique<WaveSkill>());
+///     server->start();
 ///
 /// Clients read the present content of a Program. A refused call or write gives a StatusCode; the
 /// text with value, limit and unit is then in the skill's Variable `ReasonText` (namespace
@@ -55,9 +61,11 @@ public:
     /// Serves a skill at an existing object, for example of a NodeSet. Parameters of the object
     /// that the skill does not have become read-only. Fields of the skill without a node are left
     /// out if the type declares them as Optional and no client must write them.
+    /// \param skill not null
     /// \return the Program, which lives as long as this
     /// Errors: not_found, naming all other fields of the skill without a node; type_mismatch,
-    /// naming every field whose node has another data type; already_exists (bound before).
+    ///         naming every field whose node has another data type; already_exists (bound before).
+    ///         Throws as the constructor of skill::Program.
     Result<skill::Program*> bind(const opcua::NodeId& skill_object,
                                  std::unique_ptr<skill::Skill> skill,
                                  skill::ProgramOptions options = {});
@@ -85,11 +93,13 @@ public:
 
     /// Brakes all running Programs, also those that a client starts meanwhile, and waits until all
     /// are at rest; for the end of a server. They are Halted with an error and the text `why`.
+    /// \param longest time to wait; an answer of the server's thread that comes late can double it
     /// \return false if something still runs after `longest`
     /// Threads: any but the server's, while the server serves.
     bool comeToRest(const std::string& why, std::chrono::milliseconds longest);
 
-    /// All Programs, in the order in which they were added; they end in reverse order.
+    /// All Programs, in the order in which they were added; they end in reverse order. The pointers
+    /// are valid as long as this.
     std::vector<skill::Program*> programs() const;
 
 private:

@@ -10,11 +10,16 @@ namespace metier::opcua_skill {
 
 /// A skill of another server that a skill of this server uses.
 struct RemoteSkill {
-    std::string alias;         ///< name that the using skill gives it
-    std::string endpoint_url;  ///< address of its server
-    std::string name;          ///< BrowseName of the skill
-    std::string type_name;     ///< BrowseName of its type
-    std::string controller;    ///< BrowseName of its controller; empty: none
+    /// Name that the using skill gives it; unique within that skill.
+    std::string alias;
+    /// Address of its server: "opc.tcp://host:port".
+    std::string endpoint_url;
+    /// BrowseName of the skill.
+    std::string name;
+    /// BrowseName of its type.
+    std::string type_name;
+    /// BrowseName of its controller; empty: none.
+    std::string controller;
 };
 
 // Both functions add a reference UsesSkill from `user`, a skill object. Threads: those of
@@ -31,7 +36,7 @@ Result<void> publishUse(opcua::AddressSpace& nodes, const opcua::NodeId& user,
 Result<void> updateUse(opcua::AddressSpace& nodes, const opcua::NodeId& user,
                        const RemoteSkill& used);
 
-/// Finds the skill object of that name below a folder of skills.
+/// Finds the skill object of that name below a folder of skills. Errors: not_found.
 Result<opcua::NodeId> findSkillObject(const opcua::AddressSpace& nodes, const opcua::NodeId& skills,
                                       const std::string& name);
 

@@ -19,7 +19,7 @@ opcua::Value toOpcua(const skill::Value& value);
 /// Errors: type_mismatch, naming both types; numbers are not converted.
 Result<skill::Value> fromOpcua(const opcua::Value& value, skill::ValueType type);
 
-/// Type of a value whose field is not known; `null` if skills have no such type.
+/// Type of a value whose field is not known; `null` if skills have no such type, or if it is empty.
 skill::ValueType valueTypeOf(const opcua::Value& value);
 
 /// Data type, value rank (-1 scalar, 1 array) and dimensions of the Variable for a type of value.
