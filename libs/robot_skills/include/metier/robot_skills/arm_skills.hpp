@@ -21,8 +21,9 @@ struct ArmSkills {
     std::shared_ptr<skill::Resource> resource;
     /// CartesianPtp-, CartesianLinear-, JointPtp-, JointLinearMoveSkill;
     /// CartesianLinearForceMoveSkill, if the arm has a planner or a force sensor;
-    /// CartesianPathMoveSkill.
+    /// CartesianPathMoveSkill. Hand each to a Program.
     std::vector<std::unique_ptr<skill::Skill>> moves;
+    /// PositionStreamSkill.
     std::unique_ptr<skill::Skill> position_stream;
     /// Timing of the set-points of position_stream; shared with the skill.
     std::shared_ptr<const StreamReport> stream_report;
@@ -32,6 +33,7 @@ struct ArmSkills {
 
 /// Interfaces of an arm; all must outlive its skills.
 struct ArmDevices {
+    /// The arm that moves.
     device::Arm& arm;
     /// Runs the moves that it can run exactly as asked; metier plans all others and sends
     /// set-points. Null: the controller has no planner.
@@ -41,8 +43,10 @@ struct ArmDevices {
     device::ForceTorqueSensor* sensor = nullptr;
 };
 
-/// Makes the skills of an arm.
-/// \param model, clock must outlive the skills
+/// Makes the skills of an arm. Nothing moves, and the arm need not be connected.
+/// \param model  must outlive the skills
+/// \param clock  must outlive the skills; its wall clock counts for StartTime
+/// \param stream settings of the position stream; its report must not be null
 /// Errors: invalid_argument if arm and model differ in their number of axes.
 Result<ArmSkills> makeArmSkills(const ArmDevices& devices, const motion::RobotModel& model,
                                 const Clock& clock, const PositionStreamOptions& stream = {});

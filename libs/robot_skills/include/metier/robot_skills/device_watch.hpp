@@ -15,7 +15,7 @@ namespace metier::robot_skills {
 /// are Ready are Halted, too; Reset leads back. Both also happen at once if the device is in such a
 /// state already.
 ///
-/// Threading: made and destroyed on the owner's thread.
+/// Threading: made and destroyed on the owner's thread. The device's thread only posts to that one.
 class DeviceWatch {
 public:
     /// \param device   a device::Arm or device::Gripper, must outlive this
@@ -32,8 +32,9 @@ public:
 private:
     using Programs = std::vector<skill::Program*>;
 
-    /// The callback of the device's thread.
+    /// Makes the callback of the device's thread.
     device::Arm::SafetyCallback notice(std::shared_ptr<skill::Executor> executor) const;
+    /// Acts on the state that the device has at the start.
     void begin(const device::Safety& now) const;
 
     // Shared with what was posted and has not run yet: it may find them gone.

@@ -12,66 +12,92 @@ namespace metier::robot_skills {
 
 /// Reference of a target: RelativeMode of the NodeSet.
 enum class Relative : std::int32_t {
-    absolute = 0,  ///< a pose in the base frame, or a joint position
-    base = 1,      ///< added to the start along the base axes, or to its joint position
-    tool = 2,      ///< added to the start along the axes of the tool frame; poses only
+    /// The target is a pose in the base frame, or a joint position.
+    absolute = 0,
+    /// The target is added to the start along the base axes, or to its joint position.
+    base = 1,
+    /// The target is added to the start along the axes of the tool frame; poses only.
+    tool = 2,
 };
 
 /// Parameters that every move has.
 struct MoveParameters {
-    std::string tool_frame{};                  ///< "": the flange
-    std::vector<double> max_velocity{};        ///< all zero: the robot's own
-    std::vector<double> max_acceleration{};    ///< all zero: the robot's own
-    std::int32_t relative = 0;                 ///< a Relative
-    double blend_radius = 0.0;                 ///< [m]
-    double speed_override = 1.0;               ///< fraction of the velocity limits, (0, 1]
-    std::optional<double> redundancy_angle{};  ///< [rad]
-    std::optional<double> duration{};  ///< duration of the motion [s]; none: as short as possible
+    /// Name of a tool frame of the model; "": the flange.
+    std::string tool_frame{};
+    /// Largest velocities, as MoveKind says [rad/s], or [m/s] and [rad/s]; all zero: the robot's
+    /// own.
+    std::vector<double> max_velocity{};
+    /// Largest accelerations, as MoveKind says [rad/s²], or [m/s²] and [rad/s²]; all zero: the
+    /// robot's own.
+    std::vector<double> max_acceleration{};
+    /// A Relative, as its number.
+    std::int32_t relative = 0;
+    /// Radius of the blend into a next move [m]; only 0 is taken, all else is not_supported.
+    double blend_radius = 0.0;
+    /// Factor of the velocity limits, (0, 1].
+    double speed_override = 1.0;
+    /// Arm angle of a 7-axis arm at the target [rad], -pi to pi; none: as at the start. Other arms
+    /// ignore it.
+    std::optional<double> redundancy_angle{};
+    /// Duration of the motion [s], over 0, up to 3600; none: as short as possible.
+    std::optional<double> duration{};
     /// Begin of the motion, by the clock of the server that runs it [s since 1970-01-01 UTC]; none:
     /// at once.
     std::optional<double> start_time{};
-    /// Time that a Suspend takes [s]. All arms of a common motion brake along their planned times
-    /// in it. None: as short as the arm's own limits allow.
+    /// Time that a Suspend takes [s], 0 to 3. All arms of a common motion brake along their planned
+    /// times in it. None: as short as the arm's own limits allow.
     std::optional<double> stop_time{};
 };
 
 /// A move to a pose.
 struct CartesianMoveParameters : MoveParameters {
-    skill::Frame target_position;             ///< pose of the tool frame
-    std::vector<skill::Range> axis_bounds{};  ///< [rad]; all zero: the robot's own
+    /// Pose of the tool frame [m, rad], base_from_tool unless it is relative.
+    skill::Frame target_position;
+    /// Range of each axis [rad]; all zero: the robot's own.
+    std::vector<skill::Range> axis_bounds{};
 };
 
 /// A move to a pose, which a contact force ends early.
 struct ForceMoveParameters : CartesianMoveParameters {
-    skill::Vector3 max_force;    ///< bounds along x, y, z of the base frame [N]; 0: no limit
-    bool halt_on_force = false;  ///< a force over its limit is an error: Halted, not Ready
+    /// Bounds of the force along x, y, z of the base frame [N], 0 to 1000; 0: no limit, and at
+    /// least one must be over 0.
+    skill::Vector3 max_force;
+    /// Whether a force over its limit is an error: Halted instead of Ready.
+    bool halt_on_force = false;
 };
 
 /// A move along straight lines through several poses, with rounded corners.
 struct PathMoveParameters : MoveParameters {
-    std::vector<skill::Frame> poses{};  ///< poses of the tool frame, at least one
+    /// Poses of the tool frame [m, rad], base_from_tool unless they are relative; 1 to kMostPoses.
+    std::vector<skill::Frame> poses{};
     /// Greatest distance from its pose at which each corner may be cut, > 0 [m]; one per pose, the
     /// last one is not used.
     std::vector<double> blend_radii{};
-    std::vector<double> speeds{};  ///< largest speed on the way to each pose [m/s]; 0, or an empty
-                                   ///< list: no bound of its own
+    /// Largest speed on the way to each pose [m/s], up to 10; 0, or an empty list: no bound of its
+    /// own.
+    std::vector<double> speeds{};
 };
 
 /// A move to a joint position.
 struct JointMoveParameters : MoveParameters {
-    std::vector<double> target_joint_position{};  ///< [rad]
+    /// Joint position [rad], one value per axis, axis 1 first.
+    std::vector<double> target_joint_position{};
 };
 
 /// Results of a move.
 struct MoveResults {
-    skill::Frame reached_pose;                     ///< base_from_tool, measured
-    std::vector<double> reached_joint_position{};  ///< measured [rad]
-    double duration = 0.0;                         ///< time in motion, without suspension [s]
-    /// Distance of the measured tool frame from the planned path [m] Times of the first and the
-    /// last set-point of the motion, by the clock of the server that ran it [s since 1970-01-01
-    /// UTC].
+    /// Measured pose at the end, base_from_tool [m, rad].
+    skill::Frame reached_pose;
+    /// Measured joint position at the end [rad].
+    std::vector<double> reached_joint_position{};
+    /// Time in motion, without suspension [s].
+    double duration = 0.0;
+    /// Largest distance of the measured tool frame from the planned path [m].
     double largest_path_deviation = 0.0;
+    /// Time of the first set-point, by the clock of the server that ran it [s since 1970-01-01
+    /// UTC].
     double motion_start_time = 0.0;
+    /// Time of the last set-point, by the same clock.
     double motion_end_time = 0.0;
     /// Largest time by which a set-point came too early or too late [s], counted from StartTime if
     /// there was one, else from the first set-point; 0 where the controller plans.
@@ -80,10 +106,14 @@ struct MoveResults {
 
 /// Results of a force move; forces in the base frame.
 struct ForceMoveResults : MoveResults {
-    skill::Vector3 contact_force;    ///< at the end [N]
-    skill::Vector3 contact_torque;   ///< at the end [Nm]
-    skill::Vector3 forces_exceeded;  ///< force that ended the motion [N]; zero if none did
-    skill::Vector3 forces_max;       ///< largest magnitude along each axis [N]
+    /// Force at the end [N].
+    skill::Vector3 contact_force;
+    /// Torque at the end [N m].
+    skill::Vector3 contact_torque;
+    /// Force that ended the motion [N]; zero if none did.
+    skill::Vector3 forces_exceeded;
+    /// Largest magnitude along each axis during the motion [N].
+    skill::Vector3 forces_max;
 };
 
 /// Largest number of poses of one path: planning more takes too long, as a server waits for it.
@@ -91,8 +121,10 @@ inline constexpr std::size_t kMostPoses = 100;
 
 /// Meaning of the elements of MaxVelocity and MaxAcceleration.
 enum class MoveKind : std::uint8_t {
-    ptp,     ///< each axis
-    linear,  ///< x, y, z, then rotation about x, y, z, of the tool frame
+    /// One value for each axis.
+    ptp,
+    /// Six values for the tool frame: x, y, z, then rotation about x, y, z.
+    linear,
 };
 
 /// Range [rad] of the joint positions that may be written, one for all axes: that of the NodeSet,
@@ -106,11 +138,16 @@ Range jointRangeOf(const motion::RobotModel& model);
 /// published clients always send six values.
 skill::FieldList<CartesianMoveParameters> cartesianMoveFields(const motion::RobotModel& model,
                                                               MoveKind kind);
+/// Fields of a path; the number of radii and speeds is checked at Start.
 skill::FieldList<PathMoveParameters> pathMoveFields(const motion::RobotModel& model);
+/// Fields of a move to a joint position.
 skill::FieldList<JointMoveParameters> jointMoveFields(const motion::RobotModel& model,
                                                       MoveKind kind);
+/// Fields of the results of a move; lives as long as the program. Any thread.
 const skill::FieldList<MoveResults>& moveResultFields();
+/// Fields of a force move, which is a line.
 skill::FieldList<ForceMoveParameters> forceMoveFields(const motion::RobotModel& model);
+/// Fields of the results of a force move; lives as long as the program. Any thread.
 const skill::FieldList<ForceMoveResults>& forceMoveResultFields();
 
 }  // namespace metier::robot_skills

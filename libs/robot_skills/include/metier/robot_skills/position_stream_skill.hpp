@@ -14,16 +14,20 @@
 
 namespace metier::robot_skills {
 
+/// Parameters of a position stream.
 struct PositionStreamParameters {
-    std::optional<std::vector<double>> target_joint_position{};  ///< [rad]; live
+    /// Set-point [rad], one value per axis, axis 1 first. Live: each write is a set-point, with its
+    /// SourceTimestamp as the time for which it is meant.
+    std::optional<std::vector<double>> target_joint_position{};
     /// Delay between the time for which a set-point is meant and the cycle in which the arm gets it
     /// [s], rounded up to cycles. Not set: 20 ms, but at least three cycles. 0: every cycle sends
     /// the newest set-point.
     std::optional<double> play_out_delay{};
-    /// Written true after the last set-point, while the skill runs. Live.
+    /// Whether the last set-point was written; written true while the skill runs. Live.
     std::optional<bool> end_of_stream{};
 };
 
+/// Settings of a position stream, from the cell file.
 struct PositionStreamOptions {
     /// Silence [s] that ends a stream while it moves; at least 6 cycles are waited for. The arm
     /// goes on to its last set-points meanwhile. Do not make it much shorter: a busy computer
@@ -32,23 +36,31 @@ struct PositionStreamOptions {
     /// Largest time that the arm may be behind its client, besides PlayOutDelay [s]; at least
     /// longest_silence.
     double largest_lag = 0.25;
-    /// Receives the timing of the set-points; shared with those who publish it.
+    /// Receives the timing of the set-points; shared with those who publish it; not null.
     std::shared_ptr<StreamReport> report = std::make_shared<StreamReport>();
 };
 
+/// Results of a position stream.
 struct PositionStreamResults {
-    std::uint64_t set_points = 0;     ///< number of set-points that the arm followed
-    std::uint64_t missed_cycles = 0;  ///< cycles without a set-point in time, up to the last one
-    double duration = 0.0;            ///< from Running to rest [s]
-    /// Timing of its set-points from start to end (StreamReport::Figures).
-    double largest_lag = 0.0;  ///< [s]
-    double clock_step = 0.0;   ///< [s]
+    /// Number of set-points that the arm followed.
+    std::uint64_t set_points = 0;
+    /// Number of cycles without a set-point in time, up to the last one.
+    std::uint64_t missed_cycles = 0;
+    /// Time from Running to rest [s].
+    double duration = 0.0;
+    /// Largest lag of a set-point, as StreamReport::Figures [s].
+    double largest_lag = 0.0;
+    /// Largest step of the client's clock, as StreamReport::Figures [s].
+    double clock_step = 0.0;
+    /// Number of set-points that were refused when they were written.
     std::uint64_t refused_set_points = 0;
+    /// Number of set-points that were dropped, since they were not later than the one before.
     std::uint64_t dropped_set_points = 0;
 };
 
 /// Fields of the parameters as a server publishes them for `model`, which must outlive the list.
 skill::FieldList<PositionStreamParameters> positionStreamFields(const motion::RobotModel& model);
+/// Fields of the results; lives as long as the program. Any thread.
 const skill::FieldList<PositionStreamResults>& positionStreamResultFields();
 
 /// Makes a skill that follows the joint positions that its client writes while it runs.

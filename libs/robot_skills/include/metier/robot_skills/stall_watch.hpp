@@ -20,8 +20,10 @@ namespace metier::robot_skills {
 /// it, before the owner's thread ends.
 class StallWatch {
 public:
+    /// Settings and actions of a watch.
     struct Setup {
-        std::string name;  ///< name of the server, for messages
+        /// Name of the server, for messages.
+        std::string name;
         /// Longest time without a sign of life of the owner's thread, > 0.
         std::chrono::nanoseconds limit;
         /// Stops every device at once, as Arm::stop(). Called on any thread; must stay valid for
@@ -37,6 +39,7 @@ public:
     /// \param clock    must outlive this
     StallWatch(Setup setup, std::shared_ptr<skill::Executor> executor,
                std::vector<skill::Program*> programs, const Clock& clock);
+    /// Ends the watch; waits for a `stop` or `log` that is running.
     ~StallWatch();
     StallWatch(const StallWatch&) = delete;
     StallWatch& operator=(const StallWatch&) = delete;

@@ -21,7 +21,9 @@ public:
         const auto now = newest_.read();
         return now.known ? std::optional(now.way) : std::nullopt;
     }
+    /// Shows the stop that a Halt would need now.
     void note(const motion::StoppingEstimate& way) noexcept { newest_.write({true, way}); }
+    /// Shows that no move runs.
     void clear() noexcept { newest_.write({}); }
 
 private:
@@ -36,6 +38,7 @@ private:
 /// axis brakes with its own limits. The way is that of the flange.
 /// \param acceleration of each axis, which ends first [rad/s2]; empty: none
 /// \return zero for an arm at rest that is not about to move
+/// Threads: any, also a cycle thread; pure.
 motion::StoppingEstimate stoppingEstimateOf(const device::ArmState& state,
                                             const motion::RobotModel& model,
                                             const device::JointArray& acceleration = {});

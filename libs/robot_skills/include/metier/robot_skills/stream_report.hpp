@@ -16,25 +16,30 @@ namespace metier::robot_skills {
 /// set-points, without a lock; the owner's thread notes everything else.
 class StreamReport {
 public:
+    /// Values at one moment; each is whole, but they may belong to different set-points.
     struct Figures {
         /// Time by which the newest set-point waits longer than PlayOutDelay until the arm gets it
         /// [s]; at least 0.
         double lag = 0.0;
-        double largest_lag = 0.0;  ///< since the start [s]
+        /// Largest lag since the start [s].
+        double largest_lag = 0.0;
         /// Largest step of the client's clock against this clock between two set-points [s];
         /// negative: the client's clock stepped back. A network that delays set-points after a
         /// pause can look the same.
         double clock_step = 0.0;
-        std::uint64_t refused = 0;  ///< refused when written: not finite, out of range, too many
-        /// Dropped, since its time was not after that of the one before
+        /// Number of set-points that were refused when written: not finite, out of range, too many.
+        std::uint64_t refused = 0;
+        /// Number of set-points that were dropped, since their time was not after that of the one
+        /// before.
         std::uint64_t dropped = 0;
     };
 
+    /// Present figures; neither locks nor waits.
     Figures figures() const noexcept {
         return {lag_.load(), largest_lag_.load(), clock_step_.load(), refused_.load(),
                 dropped_.load()};
     }
-    /// Reason of the last refusal of a set-point; empty: none was refused.
+    /// Reason of the last refusal of a set-point; empty: none was refused. Locks.
     std::string lastRefusal() const {
         const std::lock_guard lock(mutex_);
         return last_refusal_;
@@ -50,24 +55,26 @@ public:
         const std::lock_guard lock(mutex_);
         last_refusal_.clear();
     }
+    /// Keeps the step [s] if it is the largest so far. Owner's thread.
     void noteClockStep(double step) noexcept {
         if (std::abs(step) > std::abs(clock_step_.load())) {
             clock_step_.store(step);
         }
     }
+    /// Counts a refusal and keeps its reason. Locks.
     void noteRefused(std::string why) {
         ++refused_;
         const std::lock_guard lock(mutex_);
         last_refusal_ = std::move(why);
     }
-    /// Cycle thread.
+    /// Shows the lag of the newest set-point [s]. Cycle thread.
     void noteLag(double lag) noexcept {
         lag_.store(lag);
         if (lag > largest_lag_.load()) {
             largest_lag_.store(lag);
         }
     }
-    /// Cycle thread.
+    /// Counts a dropped set-point. Cycle thread.
     void noteDropped() noexcept { ++dropped_; }
 
 private:
