@@ -14,12 +14,16 @@ using Descriptions = std::map<std::string, skill::SkillDescription, std::less<>>
 
 /// A definition whose bindings fit the skills that it uses.
 struct Composition {
-    Definition definition;                ///< its Literals have the types of their targets
-    skill::SkillDescription description;  ///< of the composed skill
+    /// Steps and bindings; their Literals have the types of their targets.
+    Definition definition;
+    /// Description of the composed skill.
+    skill::SkillDescription description;
 };
 
 /// Checks names, types, units, ranges and lengths of all bindings against the used skills.
-/// Errors: invalid_argument, with one line "file:line: key: why" for each mistake.
+/// \param used description of each used skill by its alias
+/// Errors: invalid_argument, with one line "file:line: key: why" for each mistake. Threads: any;
+///         pure.
 Result<Composition> compose(Definition definition, const Descriptions& used);
 
 /// Description of the composed skill for its clients.

@@ -22,7 +22,9 @@ using Literal = std::variant<bool, std::int64_t, double, std::string, std::vecto
 
 /// Reference to a parameter of the composed skill, or to a result of an earlier step.
 struct Reference {
-    std::string step{};  ///< empty: a parameter
+    /// Name of the step whose result it is; empty: a parameter of the composed skill.
+    std::string step{};
+    /// Name of the parameter or result.
     std::string name{};
     /// Index of one number of it, counted from 0; a frame has x, y, z, a, b, c in this order.
     std::optional<std::size_t> element{};
@@ -30,22 +32,29 @@ struct Reference {
 
 /// One number of a list.
 struct Term {
-    double constant = 0.0;            ///< the number, if there is no reference
-    std::optional<Reference> from{};  ///< used instead of the constant
-    double factor = 1.0;              ///< multiplies the referenced value
+    /// The number, if there is no reference, in the unit of its target.
+    double constant = 0.0;
+    /// Reference that is used instead of the constant.
+    std::optional<Reference> from{};
+    /// Factor of the referenced value.
+    double factor = 1.0;
 };
 
-/// Axes along which a frame is shifted.
+/// Axes along which a frame is shifted: those of the frame in which it is given, or its own.
 enum class ShiftAxes { base, own };
 
 /// Source of a value.
 struct Binding {
+    /// Line in the file.
     std::uint32_t line = 0;
-    std::string key{};  ///< its place in the file: "step[1].with.Force"
+    /// Place in the file: "step[1].with.Force".
+    std::string key{};
+    /// A constant, a reference, or a list of numbers that may each be a reference.
     std::variant<Literal, Reference, std::vector<Term>> source{};
     /// Added number by number; to a frame, along the axes of the frame in which it is given [m].
     std::vector<Term> shift{};
-    ShiftAxes shift_axes = ShiftAxes::base;  ///< own: along the axes of the shifted frame itself
+    /// Axes along which a frame is shifted.
+    ShiftAxes shift_axes = ShiftAxes::base;
     /// The Literal in the type of its target; Null before compose().
     skill::Value constant{};
 };
@@ -53,100 +62,152 @@ struct Binding {
 /// A condition of a choice or a loop.
 struct Condition {
     enum class Kind { is, less, greater, all, any, negation };
+    /// Comparison, or the way in which `parts` count together.
     Kind kind = Kind::is;
+    /// Place in the file.
     std::uint32_t line = 0;
     std::string key{};
-    Reference subject{};             ///< for is, less, greater
-    Binding operand{};               ///< for is, less, greater
-    std::vector<Condition> parts{};  ///< for all, any, negation
+    /// Compared value; for is, less, greater.
+    Reference subject{};
+    /// Value with which it is compared; for is, less, greater.
+    Binding operand{};
+    /// Inner conditions; for all, any, negation (one).
+    std::vector<Condition> parts{};
 };
 
 /// A parameter of the called skill, with its value.
 struct Argument {
+    /// BrowseName of the parameter.
     std::string name{};
+    /// Its value.
     Binding value{};
 };
 
 /// Further attempts after a failed one.
 struct Retry {
-    std::uint32_t times = 1;            ///< number of further attempts
-    std::chrono::nanoseconds pause{0};  ///< before each further attempt
+    /// Number of further attempts, 1 to 1000.
+    std::uint32_t times = 1;
+    /// Pause before each further attempt.
+    std::chrono::nanoseconds pause{0};
 };
 
 /// Kind of a step, by the key that it has in the file.
 enum class StepKind {
+    /// Runs a used skill.
     call,
+    /// Runs one step after the other; the first failure fails it.
     sequence,
-    parallel,  ///< runs all steps at the same time
-    fallback,  ///< runs one step after the other until one succeeds
-    choice,    ///< `steps` if the condition holds, else `otherwise`
+    /// Runs all steps at the same time.
+    parallel,
+    /// Runs one step after the other until one succeeds.
+    fallback,
+    /// Runs `steps` if the condition holds, else `otherwise`.
+    choice,
+    /// Runs its steps in rounds.
     loop,
-    failure,  ///< fails with the text that the file gives
+    /// Fails with the text that the file gives.
+    failure,
 };
 
 /// Number of parallel steps that must succeed.
 enum class WaitFor {
-    all,  ///< one failure fails the whole and halts the others
-    any,  ///< one success ends the whole with success and halts the others
+    /// One failure fails the whole and halts the others.
+    all,
+    /// One success ends the whole with success and halts the others.
+    any,
 };
 
 /// A step of a composition, with the steps below it.
 struct Step {
+    /// Line in the file.
     std::uint32_t line = 0;
-    std::string key{};  ///< its place in the file: "step[1].parallel[0]"
+    /// Place in the file: "step[1].parallel[0]".
+    std::string key{};
+    /// Name for references and reports; at most kLongestStepName bytes; empty: it has none.
     std::string name{};
+    /// Kind, which decides the members that count.
     StepKind kind = StepKind::call;
-    std::string use{};                  ///< alias of the called skill; of a call
-    std::vector<Argument> arguments{};  ///< of a call
-    std::string text{};                 ///< of a failure
-    std::vector<Step> steps{};          ///< of all others
-    std::vector<Step> otherwise{};      ///< of a choice
-    WaitFor wait_for = WaitFor::all;    ///< of a parallel
-    /// For a step within a parallel: it is halted once all other steps have ended, and its failure
-    /// fails the parallel.
-    /// end.
+    /// Alias of the called skill; of a call.
+    std::string use{};
+    /// Parameters of the called skill; of a call.
+    std::vector<Argument> arguments{};
+    /// Text for a person; of a failure.
+    std::string text{};
+    /// Inner steps; of all others.
+    std::vector<Step> steps{};
+    /// Steps if the condition does not hold; of a choice.
+    std::vector<Step> otherwise{};
+    /// Number of steps that must succeed; of a parallel.
+    WaitFor wait_for = WaitFor::all;
+    /// Whether a step within a parallel that waits for all is halted once all other steps have
+    /// ended; its failure fails the parallel.
     bool background = false;
-    std::optional<Condition> condition{};  ///< of a choice; of a loop, holds before each round
-    std::optional<Condition> until{};      ///< of a loop, ends it after a round
-    std::optional<Binding> times{};        ///< of a loop
-    /// Largest number of rounds of a loop; one more is a failure
+    /// Condition of a choice; of a loop, it must hold before each round.
+    std::optional<Condition> condition{};
+    /// Condition that ends a loop after a round.
+    std::optional<Condition> until{};
+    /// Number of rounds of a loop.
+    std::optional<Binding> times{};
+    /// Largest number of rounds of a loop, 1 to 1,000,000; one more is a failure.
     std::optional<std::uint32_t> at_most{};
+    /// Further attempts if the step fails; none: one attempt.
     std::optional<Retry> retry{};
-    std::optional<std::chrono::nanoseconds> timeout{};  ///< for each attempt
+    /// Longest time of each attempt, up to 7 days; then the step is halted and has failed. None: no
+    /// limit.
+    std::optional<std::chrono::nanoseconds> timeout{};
 };
 
 /// A skill that the steps use, and the conditions for finding it.
 struct Use {
+    /// Line in the file.
     std::uint32_t line = 0;
-    std::string alias{};              ///< name that the steps use
-    std::string type{};               ///< BrowseName of its type, as "GraspGripperSkillType"
-    std::string server{};             ///< name of its server; empty: any
-    std::string controller{};         ///< name of its controller; empty: any
-    std::optional<double> reach{};    ///< least reach of the arm that it moves [m]
-    std::optional<double> payload{};  ///< least mass that the arm may carry [kg]
+    /// Name that the steps use.
+    std::string alias{};
+    /// BrowseName of its type: "GraspGripperSkillType".
+    std::string type{};
+    /// Name of its server; empty: any.
+    std::string server{};
+    /// Name of its controller; empty: any.
+    std::string controller{};
+    /// Least reach of the arm that it moves [m]; none: any.
+    std::optional<double> reach{};
+    /// Least mass that the arm may carry [kg]; none: any.
+    std::optional<double> payload{};
     /// Whether the skill may be reset even if the composed skill did not halt it.
     bool reset = false;
 };
 
 /// A parameter or result of the composed skill.
 struct Declaration {
+    /// Line in the file.
     std::uint32_t line = 0;
+    /// Name, type, unit and range.
     skill::Field field{};
-    Binding from{};  ///< only of a result
+    /// Source of the value; only of a result.
+    Binding from{};
 };
 
 /// Content of a composition file: the composed skill, the used skills, the steps.
 struct Definition {
-    std::string file{};  ///< name under which it was opened
+    /// Name under which it was opened, for messages.
+    std::string file{};
+    /// BrowseNames of the composed skill and of its type, at most 80 bytes.
     std::string name{};
     std::string type{};
+    /// One line for a person.
     std::string description{};
+    /// Values that a client may give.
     std::vector<Declaration> parameters{};
+    /// Values that an execution leaves.
     std::vector<Declaration> results{};
+    /// Skills that the steps run.
     std::vector<Use> uses{};
-    Step root{};  ///< a sequence without name
-    /// Longest time that the used skills may take to come to rest.
+    /// All steps: a sequence without name.
+    Step root{};
+    /// Longest time that the used skills may take to come to rest, over 0, up to an hour; 6 s
+    /// unless the file says otherwise.
     std::chrono::nanoseconds rest_time{};
+    /// Action when the owner of an execution is lost.
     skill::OwnerLossAction on_owner_loss = skill::OwnerLossAction::halt;
 };
 
@@ -163,6 +224,8 @@ inline constexpr std::size_t kLongestStepName = 40;
 
 /// Calls visit(step) for all calls below a step, itself included, in the order of the file.
 template <typename Visit>
+/// Calls visit(step) for all calls below a step, itself included, in the order of the file.
+/// Threads: any.
 void forEachCall(const Step& step, const Visit& visit) {
     if (step.kind == StepKind::call) {
         visit(step);

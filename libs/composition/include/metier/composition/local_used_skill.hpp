@@ -10,15 +10,17 @@
 
 namespace metier::composition {
 
-/// A skill of the same process.
+/// A skill of the same process. Its clock is this machine's, so compareClocks() always gives zero.
 ///
 /// Threading: the owner's thread, which is the Program's.
 class LocalUsedSkill final : public UsedSkill, private skill::ProgramObserver {
 public:
-    /// \param program must outlive this
-    /// \param caller  client as which the composed skill commands the Program
+    /// \param program  must outlive this
+    /// \param executor of the Program's thread; events of the listener come through it
+    /// \param caller   client as which the composed skill commands the Program
     LocalUsedSkill(skill::Program& program, std::shared_ptr<skill::Executor> executor,
                    skill::Caller caller);
+    /// Detaches from the Program; an execution that runs goes on.
     ~LocalUsedSkill() override;
     LocalUsedSkill(const LocalUsedSkill&) = delete;
     LocalUsedSkill& operator=(const LocalUsedSkill&) = delete;

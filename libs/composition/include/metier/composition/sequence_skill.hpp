@@ -14,10 +14,14 @@ namespace metier::composition {
 
 /// A used skill, and the state of its last execution.
 struct BoundSkill final : UsedSkillListener {
+    /// The used skill; not null.
     std::unique_ptr<UsedSkill> skill;
-    bool may_reset = false;  ///< always; else only if the composed skill halted it
+    /// Whether it may always be reset; else only if the composed skill halted it.
+    bool may_reset = false;
+    /// Whether the composed skill halted its last execution.
     bool halted_by_us = false;
 
+    /// Whether a Reset is allowed now.
     bool mayReset() const noexcept { return may_reset || halted_by_us || skill->leftOver(); }
     /// Notes the outcome of a Reset for which nothing waits; it shows at the next Start.
     void onReset(const Result<void>& outcome) override { halted_by_us = halted_by_us && !outcome; }
@@ -29,24 +33,29 @@ using BoundSkills = std::map<std::string, BoundSkill, std::less<>>;
 ///
 /// Each execution of a used skill gets the id "ORIGIN/EXECUTION/STEP/COUNT". Suspend, Resume and
 /// Halt reach every skill that runs; the whole is at rest once all these are. After a failure none
-/// of them is left running.
+/// of them is left running. Give its Program restDeadlineOf() as rest_deadline.
 /// Threading: the owner's thread, which all used skills report to.
 class SequenceSkill final : public skill::Skill {
 public:
-    /// \param used_skills one for each alias of the composition
-    /// \param origin   names the component, the skill, and this run of the component, so that no id
-    ///                 occurs twice: "pick-server.PickPlaceSkill~3f09a2"
-    /// \param clock    must outlive this
+    /// \param used_skills one for each alias of the composition; throws std::out_of_range without
+    ///                    one
+    /// \param executor    of the owner's thread
+    /// \param clock       must outlive this
+    /// \param origin      names the component, the skill, and this run of the component, so that no
+    ///                    id occurs twice: "pick-server.PickPlaceSkill~3f09a2"
     SequenceSkill(Composition composition,
                   std::map<std::string, std::unique_ptr<UsedSkill>> used_skills,
                   std::shared_ptr<skill::Executor> executor, const Clock& clock,
                   std::string origin);
 
     const skill::SkillDescription& description() const override { return composition_.description; }
+    /// Steps and bindings; changed by rebind().
     const Definition& definition() const noexcept { return composition_.definition; }
-    /// Errors: invalid_state, connection_lost, with the name of a used skill that every execution
-    /// needs and that cannot begin.
+    /// Errors: invalid_state (Halted), resource_unavailable (Running or Suspended),
+    ///         connection_lost, with the name of a used skill that every execution needs and that
+    ///         cannot begin.
     Result<std::unique_ptr<skill::ExecutionWork>> prepare(const skill::ValueMap& snapshot) override;
+    /// Whether an execution is running or suspended.
     bool underWay() const noexcept { return work_count_.use_count() > 1; }
     /// Replaces the used skills, from the next execution on.
     /// \param used_skills new ones by alias; after a success, the ones that were used before
@@ -73,8 +82,8 @@ private:
     std::shared_ptr<const char> work_count_ = std::make_shared<const char>();
 };
 
-/// Deadline to come to rest that a Program of this skill needs: longer than that of its used skill
-/// skills, with time to halt them.
+/// Deadline to come to rest that a Program of this skill needs: twice rest_time and 1 s, so that
+/// used skills that do not come to rest can be halted.
 std::chrono::milliseconds restDeadlineOf(const Definition& definition);
 
 }  // namespace metier::composition

@@ -14,12 +14,14 @@ namespace metier::composition {
 
 /// An arm that can move together with others.
 struct Arm {
-    std::string name{};  ///< name of the arm in the parameter Arms
+    /// Name of the arm in the parameter Arms; unique.
+    std::string name{};
     /// CartesianPtpMoveSkill: computes the joint position for a pose; never started.
     std::unique_ptr<composition::UsedSkill> pose_move{};
     /// JointPtpMoveSkill: moves the arm.
     std::unique_ptr<composition::UsedSkill> joint_move{};
-    bool halted_by_us = false;  ///< this skill halted the last execution
+    /// Whether this skill halted the last execution.
+    bool halted_by_us = false;
 
     /// Whether it may be reset: only after a halt by this skill.
     bool mayReset() const { return halted_by_us || joint_move->leftOver(); }
@@ -27,27 +29,37 @@ struct Arm {
 
 /// Parameters of the SynchronizedMoveSkill.
 struct Parameters {
-    std::vector<std::string> arms{};           ///< names, at least two, none twice
-    std::vector<skill::Frame> target_poses{};  ///< one per arm, base_from_tool
-    std::vector<std::string> tool_frames{};    ///< one per arm; empty: the flanges
-    double duration = 0.0;                     ///< least duration [s]
+    /// Names of arms, at least two, none twice.
+    std::vector<std::string> arms{};
+    /// Target poses, one per arm, base_from_tool of that arm [m, rad].
+    std::vector<skill::Frame> target_poses{};
+    /// Names of tool frames, one per arm; empty: the flanges.
+    std::vector<std::string> tool_frames{};
+    /// Least duration [s], 0 to 3600; 0: as short as possible.
+    double duration = 0.0;
 };
 
 /// Times of the set-points that the arms' controllers got [s]. After a Resume they cover the part
 /// since then.
 struct Results {
-    /// Between the first set-points of the first and of the last arm
+    /// Time between the first set-points of the first and of the last arm [s].
     double skew_at_start = 0.0;
-    double largest_skew = 0.0;       ///< largest time by which two arms were apart on the way
-    double skew_at_end = 0.0;        ///< as skew_at_start, for the last set-points
-    double clock_uncertainty = 0.0;  ///< bound of the error of the skews
-    double duration = 0.0;           ///< from the first set-point to the last
+    /// Largest time by which two arms were apart on the way [s].
+    double largest_skew = 0.0;
+    /// Time between the last set-points of the first and of the last arm [s].
+    double skew_at_end = 0.0;
+    /// Bound of the error of the skews [s]: the clocks are compared over the network.
+    double clock_uncertainty = 0.0;
+    /// Time from the first set-point to the last [s].
+    double duration = 0.0;
 };
 
 /// Settings of the SynchronizedMoveSkill.
 struct Options {
-    std::shared_ptr<skill::Executor> executor;  ///< shared by the objects of its thread
-    const Clock& clock;                         ///< must outlive the skill
+    /// Executor of the owner's thread; shared by the objects of that thread.
+    std::shared_ptr<skill::Executor> executor;
+    /// Clock of this machine; must outlive the skill.
+    const Clock& clock;
     /// Names the component, the skill and this run of the component: "both.Synchro...~3f09a2".
     std::string origin;
     /// Time between the end of planning and the begin of the motion [s]; the arms' skills are
@@ -96,6 +108,7 @@ private:
 };
 
 /// Reason why this joint move does not allow its arm to move together with others; "" if it does.
+/// Threads: any; pure.
 std::string unfitReason(const skill::SkillDescription& joint_move);
 
 }  // namespace metier::composition

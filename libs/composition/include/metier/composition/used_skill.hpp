@@ -15,29 +15,41 @@ namespace metier::composition {
 /// End of the execution of a used skill.
 struct UsedSkillEnd {
     enum class Kind {
+        /// It reached its end; `result` is complete.
         finished,
+        /// It was halted, by anybody, or reset while it was suspended.
         halted,
-        refused,  ///< it did not begin
-        lost,     ///< lost: its state is unknown from now on
+        /// It did not begin.
+        refused,
+        /// Its state is unknown from now on.
+        lost,
     };
+    /// Way in which it ended.
     Kind kind = Kind::finished;
-    skill::ValueMap result{};  ///< empty unless it finished
+    /// Values by the names of the skill's results; empty unless it finished.
+    skill::ValueMap result{};
+    /// Reason of the last transition.
     skill::Reason reason = skill::Reason::none;
-    std::string text{};  ///< with value, limit and unit
+    /// Text for a person, with value, limit and unit; may be empty.
+    std::string text{};
 };
 
 /// The execution of a used skill begins to come to rest.
 struct UsedSkillStop {
-    skill::State to = skill::State::suspended;  ///< Halted or Suspended, at standstill
+    /// State at standstill: Halted or Suspended.
+    skill::State to = skill::State::suspended;
+    /// Cause.
     skill::Reason reason = skill::Reason::by_client;
-    std::string text{};  ///< "by CLIENT", or what is wrong
+    /// Text for a person: "by CLIENT", or what is wrong.
+    std::string text{};
 };
 
 /// Clock of a used skill's server, compared with this machine's clock.
 struct ClockOffset {
-    /// How far the server's clock is ahead; negative: behind.
+    /// Time by which the server's clock is ahead; negative: behind.
     std::chrono::nanoseconds ahead{0};
-    std::chrono::nanoseconds uncertainty{0};  ///< bound of the error, in either direction
+    /// Bound of the error, in either direction.
+    std::chrono::nanoseconds uncertainty{0};
 };
 
 /// Listener to the execution of a used skill; each function does nothing unless overridden.
@@ -46,32 +58,34 @@ struct ClockOffset {
 class UsedSkillListener {
 public:
     virtual ~UsedSkillListener() = default;
-    /// Outcome of UsedSkill::reset().
+    /// Reports the outcome of UsedSkill::reset().
     virtual void onReset(const Result<void>& /*outcome*/) {}
-    /// The execution begins to come to rest, also if this side asked for it; onSuspended() or
-    /// onEnd() follows. Not called for servers that do not publish it.
+    /// Reports that the execution begins to come to rest, also if this side asked for it;
+    /// onSuspended() or onEnd() follows. Not called for servers that do not publish it.
     virtual void onStopping(const UsedSkillStop& /*stop*/) {}
-    /// The execution came to rest, at the request of any client.
+    /// Reports that the execution came to rest, at the request of any client.
     virtual void onSuspended() {}
-    /// A suspended execution goes on.
+    /// Reports that a suspended execution goes on.
     virtual void onResumed() {}
-    /// The execution published an intermediate result.
+    /// Reports an intermediate result of the execution.
     virtual void onProgress(const skill::Value& /*intermediate*/) {}
-    /// A suspend(), resume() or halt() was refused; the execution goes on as before.
+    /// Reports that a suspend(), resume() or halt() was refused; the execution goes on as before.
     virtual void onRefused(skill::Method /*method*/, const Error& /*error*/) {}
-    /// The execution has ended. Called once for each begin().
+    /// Reports that the execution has ended. Called once for each begin(), unless release() came
+    /// before.
     virtual void onEnd(UsedSkillEnd /*end*/) {}
 };
 
 /// A skill that a composed skill uses, in the same process or elsewhere.
 ///
-/// One execution at a time.
+/// One execution at a time: begin(), then the listener's onEnd(), then the next.
 /// Threading: the owner's thread; nothing waits.
 class UsedSkill {
 public:
     virtual ~UsedSkill() = default;
     /// Name for messages: "GraspGripperSkill of wsg50".
     virtual const std::string& name() const = 0;
+    /// Parameters, results and whether it can be suspended; valid as long as this.
     virtual const skill::SkillDescription& description() const = 0;
     /// Address of its server; empty for a skill of the same server.
     virtual std::string serverUrl() const { return {}; }
@@ -100,13 +114,18 @@ public:
     /// \param done as that of check()
     virtual void compareClocks(std::function<void(Result<ClockOffset>)> done) = 0;
 
-    /// Begins an execution; its events go to `listener`, the end as the last one. A suspend, resume
-    /// or halt right after this call waits until the execution has begun.
+    /// Begins an execution; its events go to `listener`, the end as the last one. A start that is
+    /// refused is an end, too: UsedSkillEnd::Kind::refused. A suspend, resume or halt right after
+    /// this call waits until the execution has begun.
+    /// \param request  with an id that no execution had before
+    /// \param listener must live until onEnd() or release()
     virtual void begin(skill::StartRequest request, UsedSkillListener& listener) = 0;
-    /// Ask the running execution, whoever began it. A refusal that is known at once is the result;
-    /// a later one goes to UsedSkillListener::onRefused().
+    /// Asks the running execution to come to rest, whoever began it. A refusal that is known at
+    /// once is the result; a later one goes to UsedSkillListener::onRefused().
     virtual Result<void> suspend() = 0;
+    /// Asks a suspended execution to go on; errors as suspend().
     virtual Result<void> resume() = 0;
+    /// Asks the execution to brake and end; a refusal goes to UsedSkillListener::onRefused().
     virtual void halt() = 0;
     /// Detaches the listener: it is not called any more.
     virtual void release() = 0;
