@@ -18,23 +18,29 @@ namespace metier::cell {
 
 /// Driver of a device, and the address of its controller.
 struct DriverChoice {
-    std::string type;        ///< such as "ur"; `metier drivers` lists them
-    std::string controller;  ///< its address, or the name of a virtual controller of the same file
-    Settings settings;       ///< settings that only this driver knows
+    /// Name of the driver: "ur"; `metier drivers` lists them.
+    std::string type;
+    /// Address of the controller, or the name of a virtual controller of the same file.
+    std::string controller;
+    /// Settings that only this driver knows; its open() checks them.
+    Settings settings;
 };
 
 /// A tool at the flange of an arm.
 struct Tool {
+    /// Name of the tool frame, by which moves choose it.
     std::string name;
     /// Tool frame in the flange frame: x, y, z [m] and a, b, c [rad], rotations about x, y, z.
     std::array<double, 6> frame{};
-    double mass = 0.0;  ///< [kg]
+    /// Mass [kg]; 0: not known.
+    double mass = 0.0;
 };
 
 /// An arm behind its own OPC UA server.
 struct ArmServer {
     /// The robot's model file, absolute.
     std::filesystem::path model;
+    /// Driver of the arm.
     DriverChoice driver;
     /// Driver of the sensor at the arm's flange, for moves that end at a contact; none: no sensor.
     std::optional<DriverChoice> force_torque_sensor;
@@ -43,54 +49,69 @@ struct ArmServer {
     std::string nodeset;
     /// Skills that the server offers, such as `PositionStreamSkill`.
     std::vector<std::string> skills;
-    std::vector<Tool> tools;  ///< in addition to the tools of the model
-    /// Longest pause between two set-points of a moving stream; a longer one ends the stream [s].
+    /// Tools in addition to those of the model.
+    std::vector<Tool> tools;
+    /// Longest pause between two set-points of a moving stream [s]; a longer one ends the stream.
     double stream_silence = 0.15;
-    double payload = 0.0;  ///< largest load at the flange [kg]; 0: not known
+    /// Largest load at the flange [kg]; 0: not known.
+    double payload = 0.0;
     /// Files that compose further skills of the server's own skills; absolute paths.
     std::vector<std::filesystem::path> compositions;
 };
 
 /// A gripper behind its own OPC UA server.
 struct GripperServer {
+    /// Driver of the gripper.
     DriverChoice driver;
-    std::string nodeset;              ///< as ArmServer::nodeset
-    std::vector<std::string> skills;  ///< as ArmServer::skills
+    /// Short name of the NodeSet that holds its nodes, as ArmServer::nodeset.
+    std::string nodeset;
+    /// Skills that the server offers, as ArmServer::skills.
+    std::vector<std::string> skills;
 };
 
 /// Move skills over the PositionStreamSkill of another server.
 struct MoveComponent {
-    /// Name of a server of the same file, or an `opc.tcp://` address.
-    /// The component reads the arm's kinematic chain and limits from there.
+    /// Name of a server of the same file, or an `opc.tcp://` address. The component reads the arm's
+    /// kinematic chain and limits from there. Empty with `discover`.
     std::string robot;
-    /// Instead of `robot`: uses a robot found by discovery, and another one when that is gone.
+    /// Whether it uses a robot found by discovery, and another one when that is gone.
     bool discover = false;
-    std::optional<double> reach{};    ///< smallest reach of a robot that discovery may choose [m]
-    std::optional<double> payload{};  ///< smallest payload of such a robot [kg]
+    /// Least reach of a robot that discovery may choose [m]; none: any.
+    std::optional<double> reach{};
+    /// Least payload of such a robot [kg]; none: any.
+    std::optional<double> payload{};
     /// Time that a found robot may be away before another one is used instead [s].
     double rebind_after = 10.0;
 };
 
 /// A server that another one uses.
 struct UsedServer {
-    std::string name;  ///< name of a server of the same cell file, or its address
-    std::string url;   ///< empty until the name is resolved
+    /// Name of a server of the same cell file, or its address.
+    std::string name;
+    /// Address "opc.tcp://..."; empty until the name is resolved.
+    std::string url;
 };
 
 /// Skills that files declare, made of skills of other servers.
 struct CompositionServer {
-    std::vector<std::filesystem::path> files;  ///< absolute
-    std::vector<UsedServer> servers;           ///< servers that have the used skills
-    bool discover = false;                     ///< uses skills of servers found by discovery, too
+    /// Composition files; absolute paths.
+    std::vector<std::filesystem::path> files;
+    /// Servers that have the used skills.
+    std::vector<UsedServer> servers;
+    /// Whether skills of servers found by discovery are used, too.
+    bool discover = false;
     /// Time that a found server may be away before another one is used instead [s].
     double rebind_after = 10.0;
 };
 
 /// Ways in which a server is found without a configured address, and finds others.
 struct Discovery {
-    std::vector<std::string> servers;  ///< addresses of Local Discovery Servers
-    double period = 30.0;              ///< time between two registrations at these servers [s]
-    bool mdns = false;                 ///< announces the server, and looks for others, by mDNS
+    /// Addresses of Local Discovery Servers: "opc.tcp://host:4840".
+    std::vector<std::string> servers;
+    /// Time between two registrations at these servers [s].
+    double period = 30.0;
+    /// Whether the server is announced, and others are looked for, by mDNS.
+    bool mdns = false;
     /// Host name or address by which others reach the server if it differs from the listening
     /// address, for example behind a forwarded port; empty: the listening address.
     std::string announce_as;
@@ -101,7 +122,8 @@ struct Discovery {
 
 /// A skill that moves the arms of several servers together.
 struct SynchronizedServer {
-    std::vector<UsedServer> servers;  ///< one arm with move skills each; at least two, none twice
+    /// Servers with one arm with move skills each; at least two, none twice.
+    std::vector<UsedServer> servers;
     /// Time from the moment when all motions are known until the arms begin [s].
     double start_delay = 0.5;
 };
@@ -111,18 +133,23 @@ struct Records {
     /// An absolute file path, "sqlite:FILE", "postgresql://..." or "off"; empty: the choice of the
     /// caller that starts the server.
     std::string url;
-    double keep_days = 90.0;         ///< age after which records are removed [day]; 0: never
-    double keep_megabytes = 2000.0;  ///< largest size of the records [10^6 byte]; 0: no bound
+    /// Age after which records are removed [day]; 0: never.
+    double keep_days = 90.0;
+    /// Largest size of the records [10^6 byte]; 0: no bound.
+    double keep_megabytes = 2000.0;
 };
 
 /// Address at which a server publishes its metrics by HTTP.
 struct HttpAddress {
+    /// Host name or IP address on which it listens.
     std::string host = "127.0.0.1";
-    std::uint16_t port = 0;  ///< 0: a free one
+    /// TCP port; 0: a free one.
+    std::uint16_t port = 0;
 };
 
 /// One process of a cell: one OPC UA server.
 struct ServerConfig {
+    /// Name of the server, unique in its cell.
     std::string name;
     /// TCP port; 0 takes a free one.
     std::uint16_t port = 0;
@@ -139,14 +166,18 @@ struct ServerConfig {
     /// Limits for its clients that differ from the defaults of opcua::ServerLimits.
     std::vector<Limit> limits;
     Discovery discovery;
-    Records records;                     ///< the same for all servers of a cell
-    std::optional<HttpAddress> metrics;  ///< none: no metrics by HTTP
+    /// Place of its records, the same for all servers of a cell.
+    Records records;
+    /// Address of its metrics by HTTP; none: no metrics.
+    std::optional<HttpAddress> metrics;
     /// Kind of server, with the keys that only servers of this kind have.
     std::variant<ArmServer, GripperServer, MoveComponent, CompositionServer, SynchronizedServer>
         kind;
 
     /// Keys of one kind of server; nullptr if the server is of another kind.
     template <typename Kind>
+    /// Keys of one kind of server; nullptr if the server is of another kind. Valid as long as
+    /// `kind` is not changed.
     const Kind* as() const noexcept {
         return std::get_if<Kind>(&kind);
     }
@@ -163,20 +194,30 @@ struct ServerConfig {
 
 /// A controller without its device, in a process of its own.
 struct VirtualController {
+    /// Name in the cell file, unique.
     std::string name;
-    std::string type;                   ///< such as "ur"
-    std::string address;                ///< address of all its ports, such as 127.0.1.1
-    std::filesystem::path model;        ///< model file of an arm, absolute; empty for other devices
-    std::uint16_t control_port = 7400;  ///< for `metier virtual inject`
-    Settings settings;                  ///< settings that only this type of controller knows
+    /// Kind of controller: "ur".
+    std::string type;
+    /// Address of all its ports: "127.0.1.1".
+    std::string address;
+    /// Model file of an arm, an absolute path; empty for other devices.
+    std::filesystem::path model;
+    /// Port for `metier virtual inject`; 0: a free one.
+    std::uint16_t control_port = 7400;
+    /// Settings that only this type of controller knows.
+    Settings settings;
 };
 
 /// A cell: processes that work together, described by a TOML file (docs/guide/cell.md). Pointers
 /// that it returns are valid as long as it is neither changed nor destroyed.
 struct CellConfig {
+    /// Name of the cell, for people.
     std::string name;
+    /// File that it was read from.
     std::filesystem::path file;
+    /// OPC UA servers, in the order of the file.
     std::vector<ServerConfig> servers;
+    /// Controllers without their device, in the order of the file.
     std::vector<VirtualController> virtual_controllers;
 
     /// The server of that name, or nullptr.
@@ -194,10 +235,11 @@ struct CellConfig {
 };
 
 /// Parses "HOST:PORT", or "PORT" for 127.0.0.1; an IPv6 address is in brackets.
-/// Errors: invalid_argument.
+/// Errors: invalid_argument. Threads: any; pure.
 Result<HttpAddress> parseHttpAddress(std::string_view text);
 
-/// Reads and checks a cell file. Relative paths in it are relative to the file.
+/// Reads and checks a cell file. Relative paths in it are relative to the file. Waits for the disk;
+/// nothing is started or connected.
 /// Errors: not_found, invalid_argument with a line "file:line: key: why" for all that is wrong.
 Result<CellConfig> loadCell(const std::filesystem::path& file);
 /// The same from text. Relative paths in it are relative to the folder of `file`, which need not

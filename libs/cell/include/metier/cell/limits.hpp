@@ -8,12 +8,16 @@ namespace metier::cell {
 
 /// A kind of limit that a cell file may set for the demands of clients on a server.
 struct LimitKind {
-    std::string_view name;  ///< its key in the file, the same as in opcua::ServerLimits
+    /// Its key in the file, the same as in opcua::ServerLimits.
+    std::string_view name;
+    /// Unit of its values: "byte", "s", or the counted thing.
     std::string_view unit;
-    /// Smallest and largest value that a file may set, both allowed, in `unit`.
+    /// Smallest value that a file may set, in `unit`.
     double least;
+    /// Largest value that a file may set, in `unit`.
     double most;
-    bool whole;  ///< a whole number; otherwise a time
+    /// Whether it is a whole number; otherwise a time.
+    bool whole;
 };
 
 /// All kinds of limits. The span is valid as long as the program runs.
@@ -21,8 +25,10 @@ std::span<const LimitKind> limitKinds() noexcept;
 
 /// A limit that a cell file sets.
 struct Limit {
-    std::string name;    ///< name of a LimitKind
-    double value = 0.0;  ///< in the unit and within the bounds of the LimitKind
+    /// Name of a LimitKind.
+    std::string name;
+    /// Value in the unit and within the bounds of the LimitKind.
+    double value = 0.0;
 };
 
 }  // namespace metier::cell

@@ -12,13 +12,18 @@
 namespace metier::cell {
 
 /// Settings of one device from a cell file or a command line: names with values. The driver reads
-/// each by its name; finish() reports all errors together, including names that were never read.
+/// each by its name; finish() reports all errors together, including names that were never read:
 ///
-/// Threading: one thread.
+///     const double force = settings.numberOr("force", 20.0, 0.0, 80.0);
+///     METIER_TRY(settings.finish());
+///
+/// Threading: one thread; reading notes the names, also through a const reference.
 class Settings {
 public:
+    /// Value of a setting; a whole number is a double, too.
     using Value = std::variant<double, bool, std::string, std::vector<double>>;
 
+    /// No settings: every value is its default.
     Settings() = default;
     /// \param place begin of each error message, such as "demo.toml:12: server[0].driver"
     Settings(std::string place, std::map<std::string, Value> values);
@@ -29,13 +34,15 @@ public:
     std::vector<std::string> namesUnder(std::string_view prefix) const;
     /// Required text. An error is noted if it is missing or of another type.
     std::string text(std::string_view name) const;
-    // Values with a default. An error is noted if one is of another type.
+    /// Text, or `fallback` if it is missing. An error is noted if it is of another type.
     std::string textOr(std::string_view name, std::string fallback) const;
+    /// true or false, or `fallback` if it is missing. An error is noted if it is of another type.
     bool flagOr(std::string_view name, bool fallback) const;
-    /// An error is also noted if the number is not within [low, high].
+    /// Number, or `fallback` if it is missing. An error is noted if it is of another type or not
+    /// within [low, high].
     double numberOr(std::string_view name, double fallback, double low, double high) const;
-    /// An error is also noted if there are not exactly `count` numbers. Returns `fallback` if
-    /// absent.
+    /// List of numbers, or `fallback` if it is missing. An error is noted if it is of another type
+    /// or has not exactly `count` numbers.
     std::vector<double> numbersOr(std::string_view name, std::vector<double> fallback,
                                   std::size_t count) const;
     /// Notes that the value is not acceptable, and why; finish() reports it.

@@ -22,14 +22,19 @@ class TomlTable;
 /// Valid as long as its TomlFile. Threading: one thread.
 class TomlValue {
 public:
+    /// true or false.
     std::optional<bool> flag() const;
+    /// A whole number.
     std::optional<std::int64_t> integer() const;
     /// A number, whole or not; nothing if it is not finite.
     std::optional<double> number() const;
+    /// A string.
     std::optional<std::string> text() const;
+    /// Whether it is a list.
     bool isList() const;
-    /// Elements of a list; empty if the value is no list.
+    /// Elements of a list, in order; empty if the value is no list.
     std::vector<TomlValue> items() const;
+    /// A table; its keys must be read, too.
     std::optional<TomlTable> table() const;
     /// Line of the value in the file, counted from 1.
     std::uint32_t line() const;
@@ -58,24 +63,33 @@ public:
     /// The value of `key`, of any type; nothing if there is no such key.
     std::optional<TomlValue> value(std::string_view key) const;
 
-    /// Required values. An error is noted if one is missing or of another type.
+    /// Required text. An error is noted, and "" returned, if it is missing or of another type; the
+    /// same for those below, with 0 or an empty list.
     std::string text(std::string_view key) const;
+    /// Required number; it must be finite.
     double number(std::string_view key) const;
+    /// Required list of finite numbers.
     std::vector<double> numbers(std::string_view key) const;
+    /// Required list of texts.
     std::vector<std::string> texts(std::string_view key) const;
+    /// Required table.
     TomlTable table(std::string_view key) const;
     /// The tables of `[[key]]`; empty if there is none.
     std::vector<TomlTable> tables(std::string_view key) const;
 
-    /// Values with a default. An error is noted if one is present and of another type.
+    /// Text, or `fallback` if the key is missing. An error is noted if it is of another type; the
+    /// same for those below.
     std::string textOr(std::string_view key, std::string fallback) const;
     /// A number >= 0; nothing if there is no such key. `unit` is for the error message.
     std::optional<double> amount(std::string_view key, std::string_view unit) const;
+    /// Finite number, or `fallback`.
     double numberOr(std::string_view key, double fallback) const;
 
-    /// Whole number within [low, high], both allowed; another value is noted as an error.
+    /// Whole number within [low, high], both allowed, or `fallback`; another value is noted as an
+    /// error.
     std::int64_t integerOr(std::string_view key, std::int64_t fallback, std::int64_t low,
                            std::int64_t high) const;
+    /// true or false, or `fallback`.
     bool flagOr(std::string_view key, bool fallback) const;
 
     /// All values but those named in `taken`, for a reader that knows their names. A value of an
@@ -90,6 +104,9 @@ public:
     std::uint32_t line() const;
 
 private:
+    /// A TOML file that is read table by table. It owns what its tables and values refer to.
+    ///
+    /// Threading: one thread.
     friend class TomlFile;
     friend class TomlValue;
     struct Impl;
@@ -100,10 +117,12 @@ private:
 /// A TOML file that is read table by table.
 class TomlFile {
 public:
-    /// Errors: not_found if the file cannot be read, invalid_argument if it is not TOML
-    /// (the text names file, line and column).
+    /// Reads and parses a file; waits for the disk.
+    /// Errors: not_found if the file cannot be read, invalid_argument if it is not TOML (the text
+    ///         names file, line and column).
     static Result<TomlFile> load(const std::filesystem::path& path);
-    /// The same from text; `name` stands for the file in messages.
+    /// Parses a text. Errors: invalid_argument.
+    /// \param name stands for the file in messages
     static Result<TomlFile> parse(std::string_view text, std::string name);
 
     TomlFile(TomlFile&&) noexcept;
