@@ -22,8 +22,10 @@ namespace metier::security {
 
 /// An act of a user or application that was done or refused.
 struct Entry {
+    /// Wall clock of the act; printed in UTC.
     UtcTime time;
-    std::string event;  ///< "Start", "Halt", "LoginRefused"
+    /// Word for the act: "Start", "Halt", "LoginRefused".
+    std::string event;
     /// Names and values, such as the user, the place and the outcome; in this order in the file.
     /// Text that is not UTF-8 is converted, and cut after 1000 bytes.
     std::vector<std::pair<std::string, std::string>> fields;
@@ -31,8 +33,10 @@ struct Entry {
 
 /// State of a log's file.
 enum class WriteState {
+    /// Entries reach the file.
     writing,
-    failing,  ///< nothing can be written: entries wait, and some may be lost
+    /// Nothing can be written: entries wait, and some may be lost.
+    failing,
 };
 
 /// A log file that only grows: one JSON object per line, each chained to the line before by
@@ -47,12 +51,15 @@ enum class WriteState {
 /// Threading: any thread may append.
 class AuditLog {
 public:
+    /// Settings of a log.
     struct Options {
+        /// File of the first part; its folder is made if it is missing.
         std::filesystem::path file;
         /// Called on the log's thread at each change between writing and failing, with the reason.
         /// May be empty.
         std::function<void(WriteState, const std::string& why)> on_write_state;
-        std::uintmax_t part_size = std::uintmax_t{64} << 20U;  ///< [byte] about
+        /// Size after which a further part is begun [byte], about.
+        std::uintmax_t part_size = std::uintmax_t{64} << 20U;
     };
 
     /// Opens the log and goes on at the end of its last part. Other users may not read the file,
@@ -61,16 +68,18 @@ public:
     /// Errors: resource_unavailable (the file, also if another log has it open);
     ///         invalid_argument (it is no audit log).
     static Result<std::unique_ptr<AuditLog>> open(Options options);
-    /// Writes waiting entries, unless the disk refuses them.
+    /// Writes waiting entries, unless the disk refuses them; waits for the disk.
     ~AuditLog();
     AuditLog(const AuditLog&) = delete;
     AuditLog& operator=(const AuditLog&) = delete;
 
-    /// Adds an entry; returns at once, does not wait for the disk.
+    /// Adds an entry; returns at once, does not wait for the disk. Beyond 10,000 waiting entries it
+    /// is lost.
     void append(Entry entry);
     /// Number of entries that are not in the file yet.
     std::size_t waiting() const;
-    /// Waits until all entries appended before are in the file; false at the deadline.
+    /// Waits until all entries appended before are in the file; false at the deadline. Not for a
+    /// server's thread.
     bool flush(SteadyTime deadline);
     /// Chain value of the newest line in the file, 64 hexadecimal digits; zeros if there is no
     /// line. A copy kept elsewhere shows later whether lines were cut off, see verify().
@@ -98,11 +107,16 @@ private:
 
 /// Content of a log whose chain is intact.
 struct Verified {
+    /// Number of entries.
     std::uint64_t entries = 0;
-    std::uint64_t first_number = 1;  ///< above 1: earlier entries are in another part
-    std::string first_time{};        ///< empty if there is no entry
+    /// Number of the first entry; above 1: earlier entries are in another part.
+    std::uint64_t first_number = 1;
+    /// Time of the first entry; empty if there is no entry.
+    std::string first_time{};
+    /// Time of the last entry; empty if there is no entry.
     std::string last_time{};
-    std::string last_chain{};  ///< 64 hexadecimal digits
+    /// Chain value of the last line, 64 hexadecimal digits.
+    std::string last_chain{};
     /// Given anchors that are chain values of this log.
     std::set<std::string> anchors{};
 };

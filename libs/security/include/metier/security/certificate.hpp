@@ -44,6 +44,7 @@ public:
     /// Reports whether it may sign other certificates.
     bool isAuthority() const noexcept { return authority_; }
 
+    /// Whether both are the same byte for byte.
     friend bool operator==(const Certificate& a, const Certificate& b) { return a.der_ == b.der_; }
 
 private:
@@ -61,10 +62,11 @@ private:
     bool authority_ = false;
 };
 
-/// SHA-1 of a certificate in DER form, as 40 hexadecimal digits.
+/// SHA-1 of a certificate in DER form, as 40 hexadecimal digits; the bytes need not be a
+/// certificate. Threads: any; pure.
 std::string thumbprintOf(std::string_view der);
 
-/// The UTC date, such as "2027-11-22".
+/// The UTC date, such as "2027-11-22". Threads: any; pure.
 std::string dateText(UtcTime time);
 
 }  // namespace metier::security

@@ -13,17 +13,24 @@ namespace metier::security {
 
 /// Identity of an application: its certificate, and the private key that proves it.
 struct Identity {
+    /// Certificate that others see.
     Certificate certificate;
-    std::string private_key;  ///< PKCS #8, DER
+    /// Private key, PKCS #8 in DER; never log it.
+    std::string private_key;
 };
 
+/// Content of a new certificate.
 struct IdentityOptions {
+    /// Common name (CN) of the certificate.
     std::string application_name = "metier";
+    /// URI in its SubjectAltName, which must be the ApplicationUri of the application.
     std::string application_uri = "urn:metier";
-    std::vector<std::string> hosts{"localhost"};  ///< host names and IPv4 addresses at which it is
-                                                  ///< reached
+    /// Host names and IPv4 addresses at which the application is reached.
+    std::vector<std::string> hosts{"localhost"};
+    /// Time from now to the end of the certificate's validity.
     std::chrono::days lifetime{730};
-    int key_bits = 2048;  ///< length of the RSA key, 2048 to 4096
+    /// Length of the RSA key [bit], 2048 to 4096.
+    int key_bits = 2048;
 };
 
 /// Makes a new key and a self-signed certificate for it, valid from an hour before `now`.
@@ -32,17 +39,19 @@ struct IdentityOptions {
 Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now);
 
 /// Makes a new key and a certificate with the names of the former identity.
+/// \param lifetime time from `now` to the end of its validity
 /// Errors: internal (the library).
 /// Threads: any; takes up to a second.
 Result<Identity> makeSuccessor(const Identity& former, std::chrono::days lifetime, UtcTime now);
 
-/// Loads the identity in `folder` from identity.pem, a file that only its owner may read.
+/// Loads the identity in `folder` from identity.pem, a file that only its owner may read. Waits for
+/// the disk.
 /// Errors: not_found (none there), access_denied (others may read it), invalid_argument (its
 ///         content).
 Result<Identity> loadIdentity(const std::filesystem::path& folder);
 
 /// Saves the identity as `folder`/identity.pem, and the certificate alone as certificate.der, which
-/// others copy to trust it.
+/// others copy to trust it. Makes a missing folder; replaces a former identity.
 /// Errors: resource_unavailable (the folder).
 Result<void> saveIdentity(const std::filesystem::path& folder, const Identity& identity);
 

@@ -23,7 +23,8 @@ public:
     /// Reports whether a server at this address has proved its identity.
     /// \param url "opc.tcp://host:port"
     bool isClosed(const std::string& url) const;
-    /// Notes that a server with a trusted certificate answered there. Errors: resource_unavailable.
+    /// Notes that a server with a trusted certificate answered there.
+    /// Errors: resource_unavailable.
     Result<void> noteClosed(const std::string& url) const;
     /// Forgets an address: the server there may be without security from now on.
     /// \return whether it was known

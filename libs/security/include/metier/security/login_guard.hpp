@@ -28,7 +28,9 @@ namespace metier::security {
 /// Threading: one thread.
 class LoginGuard {
 public:
-    /// \param clock must outlive this
+    /// Reads the file of users; waits for the disk.
+    /// \param file  of a UserTable; a missing one has no users
+    /// \param clock measures the delays; must outlive this
     /// Errors: those of UserTable::load().
     static Result<LoginGuard> open(std::filesystem::path file, const Clock& clock);
 
@@ -39,8 +41,8 @@ public:
     Result<Role> check(const std::string& user, const std::string& password,
                        const std::string& thumbprint);
 
-    /// Present role of a user; nothing if the user is not known.
-    /// Does not count as an attempt.
+    /// Present role of a user; nothing if the user is not known. Does not count as an attempt.
+    /// Waits for the file as check() does, 0.1 s at most.
     std::optional<Role> roleOf(const std::string& user);
 
 private:

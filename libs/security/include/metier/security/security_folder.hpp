@@ -42,8 +42,11 @@ public:
     /// Errors: not_found; as identity().
     Result<Identity> renew(const std::string& name, UtcTime now);
 
+    /// An identity in this folder.
     struct Own {
+        /// Name of the application, as identity() takes it.
         std::string name;
+        /// Its certificate.
         Certificate certificate;
     };
     /// Identities in this folder that can be read, sorted by name.
@@ -57,11 +60,15 @@ public:
     /// Errors: resource_unavailable.
     Result<void> setRole(const Certificate& certificate, std::optional<Role> role);
 
+    /// The folder itself.
     const std::filesystem::path& path() const noexcept { return folder_; }
-    /// Paths in this folder; they need not exist.
+    /// Path of an application's identity in this folder; it need not exist, nor need those below.
     std::filesystem::path identityFolder(const std::string& name) const;
+    /// Path of the TrustStore.
     std::filesystem::path trustFolder() const { return folder_ / "trust"; }
+    /// Path of the UserTable.
     std::filesystem::path usersFile() const { return folder_ / "users"; }
+    /// Addresses of closed servers, for a client that needs nothing else of the folder.
     /// \param folder a security folder, which need not exist
     static KnownServers knownServers(const std::filesystem::path& folder) {
         return KnownServers(folder / "closed");

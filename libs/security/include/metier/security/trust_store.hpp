@@ -15,20 +15,30 @@ namespace metier::security {
 
 /// Reasons to refuse a certificate; each has a StatusCode of its own (OPC 10000-4, 6.1.3).
 enum class RefusalKind {
+    /// The bytes are no certificate.
     malformed,
+    /// Neither it nor its authority is trusted.
     untrusted,
+    /// The end of its validity is over.
     expired,
+    /// The begin of its validity is to come; often a clock that is wrong.
     not_yet_valid,
+    /// Its authority has revoked it.
     revoked,
-    revocation_unknown,  ///< the store has no revocation list of its authority
-    weak,                ///< a key under 2048 bit, or SHA-1
-    wrong_use,           ///< its KeyUsage does not allow what OPC UA does with it
+    /// The store has no revocation list of its authority.
+    revocation_unknown,
+    /// A key under 2048 bit, or SHA-1.
+    weak,
+    /// Its KeyUsage does not allow what OPC UA does with it.
+    wrong_use,
 };
 
 /// Reason of a refusal, for the program and for a person.
 struct CertificateRefusal {
+    /// Kind of the refusal.
     RefusalKind kind = RefusalKind::malformed;
-    std::string message;  ///< with subject and thumbprint
+    /// Text for a person, with subject and thumbprint.
+    std::string message;
 };
 
 /// Certificates that an application trusts, in folders that any tool may fill (as OPC 10000-12,
@@ -55,11 +65,14 @@ public:
     /// file.
     void keepRejected(const Certificate& certificate) const;
 
-    /// Certificates by the decision on them; files that are no certificates are left out.
+    /// Certificates in trusted/certs; files that are no certificates are left out. Waits for the
+    /// disk, as do all functions below.
     std::vector<Certificate> trusted() const;
+    /// Certificates in `rejected`, which a person has to decide on.
     std::vector<Certificate> rejected() const;
 
-    /// Trusts a certificate from now on. Errors: resource_unavailable.
+    /// Trusts a certificate from now on; it is removed from `rejected`.
+    /// Errors: resource_unavailable.
     Result<void> trust(const Certificate& certificate);
     /// Ends the trust in a certificate; it is kept in `rejected`.
     /// \param name thumbprint of a trusted certificate, or the beginning of it
