@@ -11,6 +11,7 @@ namespace metier::server {
 
 /// A figure of an arm, with its source.
 struct KnownFigure {
+    /// The figure; none: unknown.
     std::optional<double> value{};
     /// Publisher of the figure, or the reason why it is unknown: "of iiwa, opc.tcp://..."; empty:
     /// the skill's own server.
@@ -19,8 +20,10 @@ struct KnownFigure {
 
 /// Reach and payload of a skill's arms.
 struct KnownFigures {
-    KnownFigure reach;    ///< [m]
-    KnownFigure payload;  ///< [kg]
+    /// Reach of the arm [m].
+    KnownFigure reach;
+    /// Payload of the arm [kg].
+    KnownFigure payload;
 };
 
 /// Figures of the arm that a skill moves itself or, for a skill that runs others, the least figures
@@ -35,12 +38,14 @@ KnownFigures figuresOf(const std::vector<SurveyedServer>& servers, std::size_t s
 
 /// Judgement whether a skill fits a task, with the reasons.
 struct Verdict {
+    /// Whether every wish is met.
     bool fits = true;
     /// One reason per wish: "reach 0.85 m >= 0.5 m", with the note in brackets.
     std::vector<std::string> reasons;
 };
 
-/// Checks that an arm has at least the wished figures. An unknown figure does not fit.
+/// Checks that an arm has at least the wished figures. An unknown figure does not fit; no wish fits
+/// every arm. Threads: any; pure.
 Verdict judge(const ArmFigures& wishes, const KnownFigures& figures);
 
 }  // namespace metier::server

@@ -15,7 +15,8 @@ namespace metier::server {
 
 /// Command that starts a process.
 struct CellCommand {
-    std::vector<std::string> words;  ///< the program and its arguments
+    /// Program (a path, or a name found in PATH) and its arguments; not empty.
+    std::vector<std::string> words;
     /// For a process that chooses a free port: option by which a restart takes the same port again;
     /// empty: none is needed.
     std::string option_for_port{};
@@ -23,7 +24,9 @@ struct CellCommand {
 
 /// Addresses of the ready processes of a cell, by name.
 struct CellAddresses {
-    std::map<std::string, std::string> servers;  ///< opc.tcp://...
+    /// Servers by name: "opc.tcp://...".
+    std::map<std::string, std::string> servers;
+    /// Virtual controllers by name: IP address.
     std::map<std::string, std::string> controllers;
 };
 
@@ -33,9 +36,11 @@ class CellCommands {
 public:
     virtual ~CellCommands() = default;
 
+    /// Command that starts a virtual controller.
     /// \param known the world, if the cell has one
     virtual CellCommand of(const cell::VirtualController& controller,
                            const CellAddresses& known) const = 0;
+    /// Command that starts a server.
     /// \param known all virtual controllers, and the servers that this one uses
     virtual CellCommand of(const cell::ServerConfig& server, const CellAddresses& known) const = 0;
 };
@@ -45,8 +50,10 @@ enum class CellRank;
 
 /// Consequence for a cell when one of its processes ends by itself.
 enum class OnFailure {
-    restart,   ///< it is started again; the others stay
-    end_cell,  ///< the whole cell ends
+    /// It is started again, after a pause; the others stay.
+    restart,
+    /// The whole cell ends.
+    end_cell,
 };
 
 /// The servers and virtual controllers of a cell as child processes of this one.
@@ -54,9 +61,12 @@ enum class OnFailure {
 /// Threading: one thread, which lives as long as this.
 class CellRunner {
 public:
+    /// A server that is ready.
     struct Running {
+        /// Name in the cell file.
         std::string name;
-        std::string url;  ///< opc.tcp://..., as the server printed it
+        /// Address as the server printed it: "opc.tcp://...".
+        std::string url;
     };
     /// Called when a server is ready, for progress on the terminal.
     using OnReady = std::function<void(const Running&)>;
@@ -72,23 +82,26 @@ public:
                                     int stop_descriptor, const OnReady& on_ready);
     CellRunner(CellRunner&&) noexcept;
     CellRunner& operator=(CellRunner&&) = delete;
-    /// Ends every process: servers that use others first, virtual controllers last. Takes 6 s at
+    /// Ends every process: servers that use others first, virtual controllers last. Waits 6 s at
     /// most; a process that takes longer is killed.
     ~CellRunner();
 
     /// Servers in the order of their start. They keep their addresses after a restart.
     const std::vector<Running>& servers() const noexcept { return running_; }
-    /// Addresses of the virtual controllers, by name.
+    /// Addresses of the virtual controllers, by name; valid as long as this.
     const std::map<std::string, std::string>& virtualControllers() const noexcept {
         return known_.controllers;
     }
 
     /// A process that ended by itself, where the cell ends with it.
     struct Ended {
+        /// Name in the cell file.
         std::string name;
-        std::string how;  ///< "ended with status 1"
+        /// Way in which it ended: "ended with status 1".
+        std::string how;
     };
-    /// Watches the processes until the descriptor becomes readable.
+    /// Watches the processes until the descriptor becomes readable; waits.
+    /// \param wake_descriptor for example that of a link::StopSignal
     /// \return nothing then; with OnFailure::end_cell the first process that ended
     std::optional<Ended> lookAfter(int wake_descriptor, OnFailure on_failure,
                                    const OnChange& on_change);

@@ -23,11 +23,14 @@ class ServerAccess;
 /// Threading: one thread makes and ends it; a thread of its own serves.
 class DiscoveryServer {
 public:
+    /// Settings of a discovery server.
     struct Options {
-        std::uint16_t port = 4840;  ///< standard port of OPC 10000-12; 0: a free one
-        /// Address to listen on; in an insecure lab a loopback address
+        /// TCP port, by default the standard one of OPC 10000-12; 0: a free one.
+        std::uint16_t port = 4840;
+        /// Address to listen on; in an insecure lab a loopback address.
         std::string address = "127.0.0.1";
-        std::chrono::seconds forget_after{75};  ///< time without renewal; at least 1 s
+        /// Time after which a registration that is not renewed is forgotten; at least 1 s.
+        std::chrono::seconds forget_after{75};
     };
 
     /// Starts serving before it returns.
@@ -36,10 +39,12 @@ public:
     /// Security::openFolder().
     static Result<std::unique_ptr<DiscoveryServer>> start(const Options& options,
                                                           const Identity& identity);
+    /// Ends the server; its registrations are gone.
     ~DiscoveryServer();
     DiscoveryServer(const DiscoveryServer&) = delete;
     DiscoveryServer& operator=(const DiscoveryServer&) = delete;
 
+    /// Endpoint address with the real port: "opc.tcp://127.0.0.1:4840".
     std::string url() const;
 
 private:

@@ -13,10 +13,10 @@ namespace metier::server {
 
 /// Choice of the user how a process and its peers identify themselves.
 ///
-/// Threads: any. All functions read or write files.
+/// Threads: any. All functions read or write files, so they wait for the disk.
 struct Security {
-    /// Uses connections without encryption, certificates and users, on this machine only: for
-    /// trials.
+    /// Whether connections are used without encryption, certificates and users, on this machine
+    /// only: for trials.
     bool insecure_lab = false;
     /// Folder of certificates, keys and users; empty: that of the user, ~/.config/metier.
     std::filesystem::path folder{};
@@ -75,6 +75,7 @@ public:
 
     /// None in an insecure lab.
     const std::optional<opcua::Credentials>& credentials() const noexcept { return credentials_; }
+    /// Choice that it was made with.
     const Security& security() const noexcept { return security_; }
 
     Result<void> secure(opcua::ClientOptions& options, const std::string& url) const override;

@@ -6,12 +6,16 @@
 
 namespace metier::server {
 
-/// Line that a server prints to standard output once clients may connect.
+/// Line that a server prints to standard output once clients may connect; without its line end.
+/// Threads of all functions here: any; pure.
+/// \param url "opc.tcp://host:port"
 inline std::string readyLine(std::string_view url) {
     return "ready " + std::string(url);
 }
 
-/// Line that a virtual controller prints to standard output once drivers may connect.
+/// Line that a virtual controller prints to standard output once drivers may connect; without its
+/// line end.
+/// \param address IP address of its ports
 inline std::string readyVirtualLine(std::string_view address) {
     return "ready virtual " + std::string(address);
 }

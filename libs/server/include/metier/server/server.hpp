@@ -14,13 +14,21 @@ namespace metier::server {
 
 /// Surroundings of servers, besides their configuration; must outlive them.
 struct Context {
+    /// Certificate of the server, and of its connections to others.
     const Identity& identity;
-    std::span<const device::Driver> drivers;  ///< known drivers, including that of the device
-    const link::StopSignal& stop;             ///< ends a start that waits for other servers
+    /// Known drivers, including that of the device: device::drivers().
+    std::span<const device::Driver> drivers;
+    /// Signal that ends a start that waits for other servers.
+    const link::StopSignal& stop;
 };
 
 /// A server of a cell: an OPC UA server with skills and all its services. Its destructor brakes the
-/// device and ends the server.
+/// device and ends the server, which takes some seconds at most.
+///
+///     link::StopSignal stop;
+///     auto identity = identityOf(config, security);
+///     auto server = start(config, {*identity, device::drivers(), stop});
+///     stop.wait();
 ///
 /// Threading: create, use and destroy it on one thread at a time.
 class Server {
@@ -29,7 +37,7 @@ public:
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;
 
-    /// Endpoint address: "opc.tcp://127.0.0.1:4841".
+    /// Endpoint address with the real port: "opc.tcp://127.0.0.1:4841".
     virtual std::string url() const = 0;
 
 protected:

@@ -15,34 +15,45 @@ namespace metier::server {
 
 /// Figures of an arm, published or wished, as far as they are known.
 struct ArmFigures {
-    std::optional<double> reach{};    ///< farthest the flange can be from axis 2 [m]
-    std::optional<double> payload{};  ///< greatest mass at the flange [kg]
+    /// Farthest distance of the flange from axis 2 [m]; none: unknown, or no wish.
+    std::optional<double> reach{};
+    /// Greatest mass at the flange [kg]; none: unknown, or no wish.
+    std::optional<double> payload{};
 };
 
 /// A skill as published in its server's address space.
 struct SurveyedSkill {
+    /// Place in its server.
     client::SkillAddress address;
-    std::vector<std::string> types;  ///< its own type, and those from which it is derived
+    /// BrowseNames of its own type, and of those from which it is derived.
+    std::vector<std::string> types;
     /// Purposes: identifiers of dictionary entries, its own, then those of its types.
     std::vector<std::string> terms{};
+    /// Skills that it runs; empty: it runs none, or does not publish them.
     std::vector<client::SkillUse> uses{};
-    ArmFigures arm{};  ///< of the arm that it moves itself
+    /// Figures of the arm that it moves itself.
+    ArmFigures arm{};
 };
 
+/// A server that was asked for its skills.
 struct SurveyedServer {
+    /// The server as it was found.
     opcua::FoundServer server;
+    /// Its skills, or the reason why it did not answer.
     Result<std::vector<SurveyedSkill>> skills;
 };
 
 /// Asks servers for their skills, many at the same time. A server that has not answered completely
 /// within `limit` gets an error instead.
+/// \param security certificate and user for the connections
+/// \return one entry for each server, in the same order
 /// Threads: any; waits, at most about a second longer than `limit` for each 32 servers.
 std::vector<SurveyedServer> survey(const std::vector<opcua::FoundServer>& servers,
                                    const ConnectionSecurity& security,
                                    std::chrono::milliseconds limit = std::chrono::seconds(2));
 
 /// Whether a skill is of a type, written with or without the ending "Type", or of a derived one; or
-/// is a composed skill of that name.
+/// is a composed skill of that name. Threads: any; pure.
 bool isA(const SurveyedSkill& skill, const std::string& type);
 
 /// Finds the term of a skill that a wish names, by its whole identifier,

@@ -8,7 +8,8 @@ namespace metier::server {
 /// Folder for state of this user's programs that outlives them: $XDG_STATE_HOME/metier, else
 /// ~/.local/state/metier; empty if neither variable nor home is known.
 std::filesystem::path userStateFolder();
-/// Folder of this user's settings: $XDG_CONFIG_HOME/metier, else ~/.config/metier; may be empty.
+/// Folder of this user's settings: $XDG_CONFIG_HOME/metier, else ~/.config/metier; empty if neither
+/// variable nor home is known. It need not exist.
 std::filesystem::path userConfigFolder();
 
 /// Host name of this machine; "localhost" if it has none. Threads: any.
