@@ -5,7 +5,7 @@
 
 namespace metier::link {
 
-/// Waits for `time`; returns early when a stop is requested.
+/// Waits for `time`; returns early when a stop is requested. Threads: any.
 void waitFor(const std::stop_token& stop, std::chrono::nanoseconds time);
 
 /// Pauses between attempts to connect: 0.2 s first, then doubled each time, up to 2 s.
@@ -13,7 +13,9 @@ void waitFor(const std::stop_token& stop, std::chrono::nanoseconds time);
 /// Threading: one thread; the stop may be requested by any.
 class BackOff {
 public:
+    /// Length of the first pause, and of the first after reset().
     static constexpr std::chrono::milliseconds kShortest{200};
+    /// Length from which pauses do not grow any more.
     static constexpr std::chrono::milliseconds kLongest{2'000};
 
     /// Call after a success: makes the next pause the shortest again.

@@ -22,7 +22,9 @@ enum class Group { owners, own };
 
 /// Options of a child's start; the defaults suit most children.
 struct ChildOptions {
+    /// Destination of the child's standard error.
     ErrorOutput error_output = ErrorOutput::inherited;
+    /// Process group of the child.
     Group group = Group::owners;
     /// Signal that the kernel sends to the child when its owner dies. A signal other than SIGKILL
     /// lets the child end in its own way; the child itself must then see that it ends in time.
@@ -36,6 +38,7 @@ struct ChildOptions {
 /// started the child for its owner.
 class ChildProcess {
 public:
+    /// Starts the program; does not wait for it. Its standard output goes to readLine().
     /// \param command program (a path, or a name found in PATH) and its arguments, not empty
     /// Errors: not_found if the program cannot be started.
     static Result<ChildProcess> start(const std::vector<std::string>& command,
@@ -47,17 +50,17 @@ public:
 
     ChildProcess(ChildProcess&& other) noexcept;
     ChildProcess& operator=(ChildProcess&& other) noexcept;
-    /// Ends the child: SIGTERM, and SIGKILL after 2 s.
+    /// Ends the child: SIGTERM, and SIGKILL after 2 s. Waits for its end.
     ~ChildProcess();
 
-    /// Process id of the child.
+    /// Process id of the child; another process may get it once the child has ended.
     pid_t pid() const noexcept { return pid_; }
     /// File descriptor of the child's standard output, for poll(); -1 once it is closed.
     int outputDescriptor() const noexcept { return output_; }
     /// File descriptor that becomes readable when the child ends, for poll().
     int endDescriptor() const noexcept { return handle_; }
 
-    /// The next line of the child's standard output, without its newline.
+    /// The next line of the child's standard output, without its newline. Waits until the deadline.
     /// Errors: timeout at the deadline, connection_lost when the child closed its output.
     Result<std::string> readLine(SteadyTime deadline);
 

@@ -41,7 +41,7 @@ public:
     /// it.
     void alive() noexcept { beats_->fetch_add(1, std::memory_order_relaxed); }
 
-    /// Process id of the guard.
+    /// Process id of the guard; for tests.
     pid_t pid() const noexcept { return pid_; }
 
 private:

@@ -12,8 +12,11 @@ namespace metier::link {
 /// Threading: one thread.
 class RestartPause {
 public:
+    /// Length of the first pause.
     static constexpr std::chrono::milliseconds kShortest{500};
+    /// Length from which pauses do not grow any more.
     static constexpr std::chrono::milliseconds kLongest{30'000};
+    /// Length of a run after which the program counts as working.
     static constexpr std::chrono::seconds kProven{60};
 
     /// \param ran_for time from the program's start to its end

@@ -11,6 +11,8 @@ namespace metier::link {
 /// Create it first in a command, before any thread. Threading: one thread.
 class StopSignal {
 public:
+    /// Blocks the signals, for good. Throws std::runtime_error if the system has no descriptor
+    /// left.
     StopSignal();
     ~StopSignal();
     StopSignal(const StopSignal&) = delete;
@@ -26,7 +28,8 @@ public:
     bool came() const { return waitUntil(SteadyTime{}); }
 
     /// Bounds the time that the program's end may take: the kernel ends the program if it still
-    /// runs after `longest`, for example because a disk or a peer hangs.
+    /// runs after `longest`, for example because a disk or a peer hangs. Whole seconds, by SIGALRM;
+    /// a later call replaces it.
     static void endWithin(std::chrono::seconds longest) noexcept;
     /// Makes writing to a lost terminal or pipe fail (SIGPIPE is ignored) instead of ending the
     /// program before its devices stand still.

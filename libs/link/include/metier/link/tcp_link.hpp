@@ -20,7 +20,9 @@ namespace metier::link {
 /// Threading: one thread sends and receives; shutdown() from any.
 class TcpLink {
 public:
-    /// \param host a name or an address
+    /// Connects to the first address of the host that answers; waits until the deadline at most,
+    /// which all its addresses share.
+    /// \param host a name or an IPv4 or IPv6 address
     /// Errors: connection_lost if there is no such host or nobody listens, timeout.
     static Result<TcpLink> connect(const std::string& host, std::uint16_t port,
                                    SteadyTime deadline);
@@ -35,7 +37,8 @@ public:
     Result<std::size_t> receive(std::span<std::byte> buffer, SteadyTime deadline);
     /// Waits until the whole buffer is filled. Errors as receive(); received bytes are lost then.
     Result<void> receiveAll(std::span<std::byte> buffer, SteadyTime deadline);
-    /// Hands all bytes to the system, in one write if the system takes them at once.
+    /// Hands all bytes to the system, in one write if the system takes them at once; waits until
+    /// the deadline at most. After an error some of the bytes may have been sent.
     /// Errors: timeout if the peer does not read, connection_lost.
     Result<void> send(std::span<const std::byte> bytes, SteadyTime deadline);
 
@@ -61,8 +64,11 @@ private:
 /// Threading: one thread; shutdown() from any.
 class TcpListener {
 public:
-    /// \param port 0: a free one
-    /// Errors: invalid_argument (not an address of this machine), already_exists (port taken).
+    /// Opens the port.
+    /// \param address IP address of this machine
+    /// \param port    0: a free one
+    /// Errors: invalid_argument (not an address of this machine, or a port that this user may not
+    ///         open), already_exists (port taken).
     static Result<TcpListener> listen(const std::string& address, std::uint16_t port);
 
     TcpListener(TcpListener&& other) noexcept = default;
@@ -71,8 +77,10 @@ public:
 
     /// Port on which it listens, also if a free one was chosen.
     std::uint16_t port() const;
-    /// Waits for the next peer. Errors: timeout at the deadline, cancelled after shutdown().
+    /// Waits for the next peer.
+    /// Errors: timeout at the deadline, cancelled after shutdown().
     Result<TcpLink> accept(SteadyTime deadline);
+    /// Closes the port: an accept() that waits returns cancelled. Idempotent.
     void shutdown() noexcept;
 
 private:

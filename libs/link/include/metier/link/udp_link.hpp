@@ -35,7 +35,8 @@ public:
     /// Errors: timeout at the deadline, connection_lost if the peer's machine reports that nobody
     ///         listens there.
     Result<std::size_t> receive(std::span<std::byte> buffer, SteadyTime deadline);
-    /// Sends one datagram. Errors: connection_lost.
+    /// Sends one datagram; does not wait, and nothing shows whether it arrives.
+    /// Errors: connection_lost.
     Result<void> send(std::span<const std::byte> bytes);
 
     /// Address and port of the peer, such as "10.0.0.5:49152".

@@ -10,13 +10,15 @@ namespace metier::link {
 /// Threading: ring() on any thread; wait() and waitUntil() on one.
 class WakeEvent {
 public:
+    /// Throws std::runtime_error if the system has no descriptor left.
     WakeEvent();
     ~WakeEvent();
     WakeEvent(const WakeEvent&) = delete;
     WakeEvent& operator=(const WakeEvent&) = delete;
 
+    /// Ends the present wait, or the next one. Neither waits nor locks.
     void ring() noexcept;
-    /// Waits until ring() was called, or the user ends the program.
+    /// Waits until ring() was called, or the user ends the program; without a deadline.
     /// \return whether it was rung
     bool wait(const StopSignal& signal);
     /// Waits until ring() was called; false at the deadline.
