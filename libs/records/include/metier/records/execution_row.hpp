@@ -24,66 +24,102 @@ inline constexpr std::string_view kServerLost = "ServerLost";
 /// after 300 bytes, ids and a reason's text after 2000, JSON after 1,000,000. States and reasons
 /// are the names that OPC UA clients see.
 struct ExecutionRow {
-    std::int64_t number = 0;    ///< number in the store, from 1; 0: it is not in one yet
-    std::string id{};           ///< id that its server gave it; unique within a skill of a server
-    std::string server{};       ///< ApplicationUri
-    std::string server_name{};  ///< its name in the cell file
-    std::string skill{};        ///< BrowseName of the Program
+    /// Number in the store, from 1; 0: it is not in one yet.
+    std::int64_t number = 0;
+    /// Id that its server gave it; unique within a skill of a server.
+    std::string id{};
+    /// ApplicationUri of its server.
+    std::string server{};
+    /// Name of its server in the cell file.
+    std::string server_name{};
+    /// BrowseName of the Program.
+    std::string skill{};
     /// BrowseName of the object to which the Program belongs; may be empty
     std::string controller{};
-    std::string device{};         ///< the arm or gripper it moves; may be empty
-    std::string parent{};         ///< id of the execution that started it; empty: a client did
-    std::string parent_server{};  ///< ApplicationUri of the parent; empty: the same server
-    std::string session{};        ///< id of the session that started it
-    std::string client_name{};    ///< name that the client of that session gave
-    std::string user{};           ///< empty: anonymous
-    std::string thumbprint{};     ///< of the client's certificate, hexadecimal; may be empty
-    std::string parameters{};     ///< JSON object, a member for each parameter
-    /// JSON of the answer to an earlier Check of the same parameters; may be empty
+    /// Name of the arm or gripper that it moves; may be empty.
+    std::string device{};
+    /// Id of the execution that started it; empty: a client did.
+    std::string parent{};
+    /// ApplicationUri of the parent; empty: the same server.
+    std::string parent_server{};
+    /// Id of the session that started it.
+    std::string session{};
+    /// Name that the client of that session gave.
+    std::string client_name{};
+    /// Name of the user; empty: anonymous.
+    std::string user{};
+    /// SHA-1 of the client's certificate, hexadecimal; may be empty.
+    std::string thumbprint{};
+    /// JSON object, a member for each parameter.
+    std::string parameters{};
+    /// JSON of the answer to an earlier Check of the same parameters; may be empty.
     std::string check{};
+    /// Server's wall clock at its Start.
     UtcTime started{};
-    UtcTime ended{};            ///< UtcTime{} while it is under way
-    std::string state{};        ///< "Running", "Suspended"; once over "Ready", "Halted" or kLost
-    std::string reason{};       ///< "Finished", "ByClient", ...; may be empty
-    std::string reason_text{};  ///< for a person; may be empty
-    std::string result{};       ///< JSON object; empty unless it finished
-    std::uint64_t missed_cycles = 0;  ///< of the device, while this ran
+    /// Server's wall clock at its end; UtcTime{} while it is under way.
+    UtcTime ended{};
+    /// State: "Running", "Suspended"; once over "Ready", "Halted" or kLost.
+    std::string state{};
+    /// Reason of the last transition: "Finished", "ByClient", ...; may be empty.
+    std::string reason{};
+    /// Text for a person; may be empty.
+    std::string reason_text{};
+    /// JSON object, a member for each result; empty unless it finished.
+    std::string result{};
+    /// Number of cycles that the device missed while this ran.
+    std::uint64_t missed_cycles = 0;
 
+    /// Whether it has ended.
     bool isOver() const noexcept { return ended != UtcTime{}; }
 };
 
 /// A change of an execution's state, sub-state or step.
 struct Transition {
+    /// Server's wall clock.
     UtcTime time{};
-    std::string from{};       ///< state; the same as `to` if only sub-state or step changed
-    std::string to{};         ///< state
-    std::string sub_state{};  ///< after it; may be empty
-    std::string step{};       ///< of a composed skill, after it; may be empty
+    /// State before; the same as `to` if only sub-state or step changed.
+    std::string from{};
+    /// State after.
+    std::string to{};
+    /// Sub-state after it; may be empty.
+    std::string sub_state{};
+    /// Step of a composed skill after it; may be empty.
+    std::string step{};
+    /// Reason and its text, as in ExecutionRow.
     std::string reason{};
     std::string reason_text{};
 };
 
 /// A value that a skill published while it ran.
 struct Intermediate {
+    /// Server's wall clock.
     UtcTime time{};
-    std::string value{};  ///< JSON
+    /// Value as JSON.
+    std::string value{};
 };
 
 /// End of an execution.
 struct Outcome {
+    /// Server's wall clock.
     UtcTime time{};
-    std::string state{};  ///< "Ready" or "Halted"
+    /// Last state: "Ready" or "Halted".
+    std::string state{};
+    /// Reason and its text, as in ExecutionRow.
     std::string reason{};
     std::string reason_text{};
-    std::string result{};             ///< JSON object; empty unless it finished
-    std::uint64_t missed_cycles = 0;  ///< of the device, while this ran
+    /// JSON object; empty unless it finished.
+    std::string result{};
+    /// Number of cycles that the device missed while this ran.
+    std::uint64_t missed_cycles = 0;
 };
 
 /// Up to kMost numbers in place: never allocates.
 class SampleValues {
 public:
+    /// Largest number of values: that of axes.
     static constexpr std::size_t kMost = 8;
 
+    /// No values.
     SampleValues() = default;
     /// Takes the first kMost of `values`.
     explicit SampleValues(std::span<const double> values) noexcept
@@ -93,6 +129,7 @@ public:
 
     std::size_t size() const noexcept { return size_; }
     bool empty() const noexcept { return size_ == 0; }
+    /// Value at that place, from 0; `i` must be less than size(), which is not checked.
     double operator[](std::size_t i) const noexcept { return values_[i]; }
     std::span<const double> values() const noexcept { return {values_.data(), size_}; }
     friend bool operator==(const SampleValues& a, const SampleValues& b) noexcept {
@@ -107,10 +144,14 @@ private:
 
 /// Positions of the axes at one time. Trivially copyable.
 struct PathSample {
-    double time = 0;           ///< since the start of the execution [s]
-    SampleValues actual{};     ///< joint position, axis 1 first [rad]
-    SampleValues commanded{};  ///< joint position [rad]; may be empty
-    SampleValues force{};      ///< fx, fy, fz [N], tx, ty, tz [Nm], tool frame; may be empty
+    /// Time since the start of the execution [s].
+    double time = 0;
+    /// Measured joint position, axis 1 first [rad].
+    SampleValues actual{};
+    /// Commanded joint position [rad]; may be empty.
+    SampleValues commanded{};
+    /// Force x, y, z [N], torque x, y, z [N m], in the axes of the sensor; may be empty.
+    SampleValues force{};
 };
 
 }  // namespace metier::records

@@ -14,9 +14,11 @@
 namespace metier::records {
 
 /// A store that is opened at its first use and kept open. It is opened anew when its file was
-/// replaced or its database was away.
+/// replaced or its database was away:
 ///
-/// Threading: any number of threads, one after the other.
+///     auto rows = store.use([&](Store& records) { return records.list(filter, page); });
+///
+/// Threading: any number of threads, one after the other. No server's thread: use() waits.
 class KeptStore {
 public:
     /// Longest wait for other threads.
@@ -29,6 +31,10 @@ public:
     /// `work` is called once more, with a new one.
     /// Errors: those of Store::open() and of `work`; resource_unavailable (kPatience passed).
     template <typename Work>
+    /// Returns the Result of work(Store&). After an error that may come from an old connection,
+    /// `work` is called once more, with a new one. Waits for other threads, kPatience at most, and
+    /// for the store.
+    /// Errors: those of Store::open() and of `work`; resource_unavailable (kPatience passed).
     auto use(Work work) -> std::invoke_result_t<Work, Store&> {
         if (!take()) {
             return fail(Errc::resource_unavailable, "records are being read for others");

@@ -10,20 +10,27 @@
 
 namespace metier::records {
 
-/// Table of the schema that has a member's column.
+/// Table of the schema that has a member's column: the executions themselves, or one of the two
+/// that keep each repeated text once.
 enum class Table : std::uint8_t { executions, kinds, notes };
 
-/// Kind of a text; it decides after how many bytes the text is cut.
+/// Kind of a text; it decides after how many bytes the text is cut: name 300, key 2000, json
+/// 1,000,000.
 enum class Form : std::uint8_t { name, key, json };
 
 /// Description of a member of Execution or Transition. JSON, SQL, the limits of texts and the
 /// memory that a record takes all use these descriptions.
 struct Member {
-    std::string_view name;           ///< in JSON
-    std::string_view column = name;  ///< in SQL
+    /// Name in JSON.
+    std::string_view name;
+    /// Name in SQL.
+    std::string_view column = name;
+    /// Table that has the column.
     Table table = Table::executions;
-    Form form = Form::name;  ///< of a text
-    bool changes = false;    ///< changes after the begin, in the table of executions
+    /// Kind of the text; for others without a meaning.
+    Form form = Form::name;
+    /// Whether it changes after the begin, in the table of executions.
+    bool changes = false;
 };
 
 /// Calls visit(const Member&, T& member) for each member, in their order. T is std::string,
@@ -74,6 +81,7 @@ void visitMembers(T& transition, Visit visit) {
 /// The same for an intermediate result, and for an outcome.
 template <typename T, typename Visit>
 requires std::same_as<std::remove_const_t<T>, Intermediate>
+/// The same for an intermediate result.
 void visitMembers(T& intermediate, Visit visit) {
     visit(Member{.name = "time"}, intermediate.time);
     visit(Member{.name = "value", .form = Form::json}, intermediate.value);
@@ -81,6 +89,7 @@ void visitMembers(T& intermediate, Visit visit) {
 
 template <typename T, typename Visit>
 requires std::same_as<std::remove_const_t<T>, Outcome>
+/// The same for an outcome.
 void visitMembers(T& outcome, Visit visit) {
     visit(Member{.name = "time"}, outcome.time);
     visit(Member{.name = "state"}, outcome.state);

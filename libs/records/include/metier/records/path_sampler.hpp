@@ -23,17 +23,20 @@ namespace metier::records {
 /// thread.
 class PathSampler {
 public:
+    /// Time between two readings while an execution is under way.
     static constexpr std::chrono::milliseconds kPeriod{10};
 
+    /// Starts the thread.
     /// \param arm      must outlive this, as must the sensor and the recorder
-    /// \param sensor   may be null
+    /// \param sensor   may be null: samples have no force then
     PathSampler(const device::Arm& arm, const device::ForceTorqueSensor* sensor,
                 Recorder& recorder);
     ~PathSampler();
     PathSampler(const PathSampler&) = delete;
     PathSampler& operator=(const PathSampler&) = delete;
 
-    /// Starts recording for an execution.
+    /// Starts recording for an execution; several may be under way.
+    /// \param key from Recorder::begin()
     void begin(Recorder::Key key);
     /// Stops recording for an execution; no sample of it comes after this.
     /// \return number of cycles that the arm has missed since begin()

@@ -17,14 +17,19 @@ class ProgramRecorder final : private skill::ProgramObserver {
 public:
     /// Names under which the Program's records appear; may be empty.
     struct Place {
-        std::string server_name{};  ///< name of the server in the cell file
-        std::string controller{};   ///< BrowseName of what the Program belongs to
-        std::string device{};       ///< the arm or gripper it moves
+        /// Name of the server in the cell file.
+        std::string server_name{};
+        /// BrowseName of the object to which the Program belongs.
+        std::string controller{};
+        /// Name of the arm or gripper that it moves.
+        std::string device{};
     };
 
+    /// Observes the Program from now on.
     /// \param program must outlive this, as must the recorder and the sampler
     /// \param sampler of the arm that the Program moves; null: it moves none
     ProgramRecorder(skill::Program& program, Recorder& recorder, PathSampler* sampler, Place place);
+    /// Ends the observation; an execution that is under way is recorded as Halted, error.
     ~ProgramRecorder() override;
     ProgramRecorder(const ProgramRecorder&) = delete;
     ProgramRecorder& operator=(const ProgramRecorder&) = delete;

@@ -16,8 +16,11 @@ namespace metier::records {
 
 /// Number of records that were lost.
 struct Dropped {
+    /// Number of executions, with all that belongs to them.
     std::uint64_t executions = 0;
-    std::uint64_t events = 0;  ///< transitions and intermediate results
+    /// Number of transitions and intermediate results.
+    std::uint64_t events = 0;
+    /// Number of samples of paths.
     std::uint64_t samples = 0;
 
     std::uint64_t sum() const noexcept { return executions + events + samples; }
@@ -32,15 +35,20 @@ struct Dropped {
 
 /// Whether records are written.
 enum class WriteState {
+    /// Records reach the store.
     writing,
-    failing,  ///< nothing can be written, or writing takes too long: records are lost or may be
+    /// Nothing can be written, or writing takes too long: records are lost or may be.
+    failing,
 };
 
 /// Report for the server's clients: sent once when recording fails, and once when it works again.
 struct WriteReport {
+    /// State from now on.
     WriteState write_state = WriteState::writing;
-    std::string text{};  ///< for a person: the reason and what was lost, "records work again: ..."
-    Dropped dropped{};   ///< since the recorder was made
+    /// Text for a person: the reason and what was lost, "records work again: ...".
+    std::string text{};
+    /// Records that were lost since the recorder was made.
+    Dropped dropped{};
 };
 
 /// Records the executions of one server. Every call returns at once, whatever the disk does.
@@ -58,15 +66,21 @@ public:
     /// Key of one execution in this recorder; 0: it was dropped, and so is all that belongs to it.
     using Key = std::uint64_t;
 
+    /// Settings of a recorder.
     struct Options {
-        std::string url{};     ///< as Store::open() takes it
-        std::string server{};  ///< ApplicationUri; no other recorder uses it
+        /// Store, as Store::open() takes it.
+        std::string url{};
+        /// ApplicationUri of the server; no other recorder uses it.
+        std::string server{};
+        /// Age and size up to which records are kept.
         Retention keep{};
         /// Called on a thread of the recorder, at each change between writing and failing. May be
         /// empty.
         std::function<void(const WriteReport&)> on_write_state{};
-        std::size_t most_waiting = 50'000'000;      ///< executions and events [byte]
-        std::size_t most_waiting_samples = 16'384;  ///< about 230 byte each
+        /// Largest memory of executions and events that wait [byte].
+        std::size_t most_waiting = 50'000'000;
+        /// Largest number of samples that wait, about 230 byte each.
+        std::size_t most_waiting_samples = 16'384;
         /// Longest time without a write, since the disk hangs or others lock the store, that is not
         /// reported as failing while nothing is lost: a busy machine is no fault.
         std::chrono::milliseconds patience{20'000};
@@ -74,10 +88,15 @@ public:
 
     /// Figures for metrics.
     struct Status {
+        /// Whether records are written now.
         WriteState write_state = WriteState::writing;
-        std::size_t waiting = 0;          ///< executions and events that are not written yet
-        std::size_t waiting_samples = 0;  ///< samples that are not written yet
-        std::uint64_t written = 0;        ///< number of executions that are in the store
+        /// Number of executions and events that are not written yet.
+        std::size_t waiting = 0;
+        /// Number of samples that are not written yet.
+        std::size_t waiting_samples = 0;
+        /// Number of executions that are in the store.
+        std::uint64_t written = 0;
+        /// Records that were lost since the recorder was made.
         Dropped dropped{};
     };
 
@@ -92,10 +111,13 @@ public:
 
     /// Begins an execution; its server is always Options::server. Its state follows from its
     /// transitions.
+    /// \return 0 if it was dropped
     virtual Key begin(ExecutionRow execution) = 0;
     /// Adds a transition, in the order of their times; the first 100,000 of an execution are kept.
     virtual void transition(Key key, Transition transition) = 0;
+    /// Adds a value that the execution published.
     virtual void intermediate(Key key, Intermediate intermediate) = 0;
+    /// Adds a sample of the arm's path.
     virtual void sample(Key key, const PathSample& sample) = 0;
     /// Ends an execution; nothing of it may follow.
     virtual void end(Key key, Outcome outcome) = 0;
@@ -103,7 +125,7 @@ public:
     /// Waits until readers see all that was recorded before. For tests and tools, not for servers.
     /// \return false at the deadline
     virtual bool flush(SteadyTime deadline) = 0;
-    /// Threads: any.
+    /// Present figures. Threads: any.
     virtual Status status() const = 0;
 
 protected:

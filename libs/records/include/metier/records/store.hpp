@@ -18,14 +18,22 @@ class Database;
 
 /// Filter for executions. An empty member accepts all; any other must match as a whole.
 struct Filter {
-    std::string server{};  ///< ApplicationUri or name of the server
-    std::string skill{};   ///< BrowseName
-    std::string state{};   ///< "Running", "Ready", "Halted", "Suspended", "Lost"
-    std::string reason{};  ///< "Finished", "ByClient", ...
+    /// ApplicationUri or name of the server.
+    std::string server{};
+    /// BrowseName of the skill.
+    std::string skill{};
+    /// State: "Running", "Ready", "Halted", "Suspended", "Lost".
+    std::string state{};
+    /// Reason: "Finished", "ByClient", ...
+    std::string reason{};
+    /// Name of the user that started them.
     std::string user{};
-    std::string parent{};            ///< id of the execution that started them
-    std::optional<UtcTime> from{};   ///< started at that time or later
-    std::optional<UtcTime> until{};  ///< started before that time
+    /// Id of the execution that started them.
+    std::string parent{};
+    /// Time at which or after which they started.
+    std::optional<UtcTime> from{};
+    /// Time before which they started.
+    std::optional<UtcTime> until{};
     /// Part of the reason's text or of a name (server, controller, skill, device, user, state,
     /// reason), in upper or lower case; or the whole id.
     std::string text{};
@@ -33,27 +41,34 @@ struct Filter {
 
 /// Part of a list.
 struct Page {
-    /// Number of the last execution of the page before; 0: the first page
+    /// Number of the last execution of the page before; 0: the first page.
     std::int64_t before = 0;
-    std::uint32_t count = 100;  ///< largest number of executions, 1 to 10,000
+    /// Largest number of executions, 1 to 10,000.
+    std::uint32_t count = 100;
 };
 
 /// Executions, newest start first.
 struct Listing {
+    /// Executions of this page.
     std::vector<ExecutionRow> executions{};
-    bool more = false;  ///< there are older ones that match
+    /// Whether there are older ones that match.
+    bool more = false;
 };
 
 /// Executions that were added or changed.
 struct Changes {
-    std::vector<ExecutionRow> executions{};  ///< as they are now, in the order of their last change
-    std::int64_t revision = 0;               ///< pass it to the next call of changes()
+    /// Executions as they are now, in the order of their last change.
+    std::vector<ExecutionRow> executions{};
+    /// Revision up to which they were read; pass it to the next call of changes().
+    std::int64_t revision = 0;
 };
 
 /// Age and size up to which records are kept; 0: no limit.
 struct Retention {
-    std::chrono::hours age{24 * 90};      ///< since the start
-    std::uint64_t bytes = 2'000'000'000;  ///< size of executions and their paths
+    /// Largest age since the start; 0: no limit.
+    std::chrono::hours age{24 * 90};
+    /// Largest size of executions and their paths [byte]; 0: no limit.
+    std::uint64_t bytes = 2'000'000'000;
 };
 
 /// Whether a URL of Store::open() contains a password, which a command line would show to every
@@ -70,8 +85,10 @@ bool hasPassword(std::string_view url);
 class Store {
 public:
     enum class Access {
-        read,   ///< changes nothing; a store that does not exist is not_found
-        write,  ///< creates file and folder (for their owner alone), or the tables
+        /// Changes nothing; a store that does not exist is not_found.
+        read,
+        /// Creates file and folder (for their owner alone), or the tables.
+        write,
     };
 
     /// \param url a file, "sqlite:FILE", or "postgresql://USER@HOST/DATABASE" as libpq takes it
@@ -91,17 +108,20 @@ public:
     /// Lists executions, newest first. An unknown Page::before gives an empty list.
     Result<Listing> list(const Filter& filter, const Page& page);
     /// Executions that this execution started, on any server, oldest first.
+    /// \param number ExecutionRow::number, as in the functions below
     Result<std::vector<ExecutionRow>> children(std::int64_t number);
-    /// Transitions, in the order of their times; empty for an unknown number. The next two do the
-    /// same.
+    /// Transitions, in the order of their times; empty for an unknown number.
     Result<std::vector<Transition>> transitions(std::int64_t number);
+    /// Intermediate results, in the order of their times; empty for an unknown number.
     Result<std::vector<Intermediate>> intermediates(std::int64_t number);
+    /// Samples of the path, in the order of their times; empty for an unknown number.
     Result<std::vector<PathSample>> path(std::int64_t number);
     /// Executions that any server added or changed after `revision`; to be called repeatedly.
     /// \param revision that of the last answer; latestRevision() at first. A revision that this
     ///                 store has not reached, as that of a replaced store, gives none
     Result<Changes> changes(std::int64_t revision, const Filter& filter = {},
                             std::uint32_t count = 1'000);
+    /// Revision of the newest change; 0: there is none.
     Result<std::int64_t> latestRevision();
 
     /// Approximate size of executions and their paths [byte].
