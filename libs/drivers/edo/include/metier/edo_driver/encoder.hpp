@@ -13,18 +13,26 @@ namespace metier::edo_driver {
 // left out: missing fields keep their defaults, an unknown one would make the server drop the whole
 // message.
 
+// Encoders of the JSON texts for the rosbridge server. Fields that older software does not know are
+// left out: missing fields keep their defaults, an unknown one would make the server drop the whole
+// message. Threads: any; pure; all but SetPointText allocate. Source: docs/protocols/edo.md.
+/// Announces a topic before its first message; `type` as "edo_core_msgs/JointInit".
 std::string advertiseText(std::string_view topic, std::string_view type);
 /// Subscribes to every message, sent as soon as it exists: no throttle, no fragments, no
 /// compression.
 std::string subscribeText(std::string_view topic, std::string_view type);
+/// Calls /machine_bridge_sw_version_srv; its answer has the same id.
 std::string softwareVersionCallText(std::string_view id);
+/// Calls /algo_control_switch_srv, which takes or gives back control; see Generation.
 /// \param mode mode of ControlSwitch, 0 to 255
 std::string controlSwitchCallText(std::string_view id, int mode);
-/// Discovery of the joints (mode 0).
+/// Discovers the joints (mode 0), on /bridge_init.
 std::string initText(const JointLayout& layout);
+/// Releases the brakes, on /bridge_jnt_reset.
 std::string resetText(const JointLayout& layout, const ResetRequest& request);
+/// Begins a joint motion that the robot plans, on /bridge_move.
 std::string moveText(const JointLayout& layout, const JointMove& move);
-/// Cancels all moves.
+/// Cancels all moves, on /bridge_move.
 std::string cancelText();
 
 /// Writes the text of a set-point into its own buffer, once per cycle.

@@ -18,6 +18,7 @@ namespace metier::edo_driver {
 /// Threading: one thread; shutdown() from any.
 class WebSocketLink {
 public:
+    /// Connects and shakes hands; waits until the deadline at most.
     /// \param host a name or an address
     /// Errors: connection_lost (no such host, nobody listens, no websocket server), timeout.
     static Result<WebSocketLink> connect(const std::string& host, std::uint16_t port,
@@ -40,6 +41,7 @@ public:
 
     /// Ends both directions: a receive() that waits returns connection_lost. Idempotent.
     void shutdown() noexcept;
+    /// Address and port of the server: "10.42.0.49:9090".
     const std::string& peer() const noexcept;
 
 private:

@@ -13,12 +13,18 @@
 
 namespace metier::iiwa_driver {
 
+/// Settings of the driver for an iiwa.
 struct IiwaOptions {
-    std::string name = "iiwa";          ///< name of the arm in messages
-    std::string address = "127.0.0.1";  ///< address of this computer to which the cabinet connects
-    std::uint16_t port = 12225;         ///< 0: a free one
+    /// Name of the arm in messages.
+    std::string name = "iiwa";
+    /// Address of this computer to which the cabinet connects.
+    std::string address = "127.0.0.1";
+    /// TCP port to which the cabinet connects; 0: a free one.
+    std::uint16_t port = 12225;
+    /// Number format that the cabinet is set to.
     Precision precision = Precision::float32;
-    std::chrono::nanoseconds cycle{std::chrono::milliseconds(10)};  ///< polling period, > 0
+    /// Period in which the cabinet is asked for its state, > 0.
+    std::chrono::nanoseconds cycle{std::chrono::milliseconds(10)};
     /// Longest silence of the cabinet after a command.
     std::chrono::nanoseconds answer_timeout{std::chrono::milliseconds(100)};
     /// Index of the attached tool in the station's setup; -1: none.
@@ -41,9 +47,11 @@ struct IiwaOptions {
 /// Its destructor closes the connection; the cabinet then stops a moving arm.
 class IiwaArm : public device::Arm, public device::MotionPlanner {
 public:
+    /// Opens the port and waits for the cabinet on a thread of its own; until it connects, the arm
+    /// is disconnected.
     /// \param model model of an arm with 7 axes; must outlive the arm
     /// Errors: invalid_argument (model, cycle, not an address of this computer), already_exists
-    /// (the port is taken).
+    ///         (the port is taken).
     static Result<std::unique_ptr<IiwaArm>> create(const IiwaOptions& options,
                                                    const motion::RobotModel& model);
 

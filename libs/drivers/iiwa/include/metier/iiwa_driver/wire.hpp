@@ -15,29 +15,48 @@ namespace metier::iiwa_driver {
 inline constexpr std::size_t kAxes = 7;
 
 /// Number format of the cabinet; a switch in its process data, not negotiated on the wire.
-enum class Precision : std::uint8_t { float32, float64 };
+enum class Precision : std::uint8_t {
+    float32,  ///< 4 bytes per number
+    float64   ///< 8 bytes per number
+};
 
 /// Commands of the robot application. Source: docs/protocols/iiwa.md#commands.
 enum class Code : std::uint16_t {
+    /// Answers with the state only.
     state = 0,
+    /// Cancels the motion.
     cancel = 101,
+    /// Moves to 7 joint positions [rad]; with the servo interface, changes the target.
     move_joints = 102,
+    /// Moves to X Y Z [mm], A B C [rad], by the motion type.
     move_pose = 103,
+    /// Share of the largest joint velocity, 0 to 1.
     joint_velocity = 201,
+    /// Share of the largest joint acceleration, 0 to 1.
     joint_acceleration = 202,
+    /// Velocity along a line [mm/s].
     line_velocity = 204,
+    /// Acceleration along a line [mm/s²].
     line_acceleration = 205,
+    /// Three force limits along the axes of the flange and their tolerances [N]; NaN: not watched.
     force_condition = 211,
+    /// Control interface: 31 standard, 32 servo.
     interface = 302,
+    /// Motion type of move_pose: 21 PTP, 22 LIN.
     motion_type = 303,
+    /// Control mode: 41 position.
     control_mode = 304,
+    /// Execution: 51 asynchronous, so that the state comes at once.
     execution = 305,
+    /// Attaches the tool of that index; poses are then those of the tool.
     tool = 400,
 };
 
 /// One command in the units of the wire: mm, rad, N.
 struct Command {
+    /// Number of the command.
     Code code = Code::state;
+    /// Arguments of the command; those that it does not have are 0.
     std::array<double, 7> arguments{};
 };
 
@@ -55,7 +74,8 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Encodes a command as eight big-endian numbers. Neither allocates nor throws.
+/// Encodes a command as eight big-endian numbers: its code and seven arguments. Neither allocates
+/// nor throws. Threads: any; pure.
 CommandBytes encode(const Command& command, Precision precision) noexcept;
 
 /// Number of bytes of a state, which has 38 numbers.
@@ -66,30 +86,48 @@ inline constexpr std::size_t kLongestState = stateSize(Precision::float64);
 
 /// The cabinet's answer to every command, in SI units. Trivially copyable.
 struct CabinetState {
-    bool executed = false;             ///< the command was executed or scheduled; false for `state`
-    device::JointArray position;       ///< [rad]
-    device::JointArray velocity;       ///< differences over some 10 ms [rad/s]
-    device::JointArray joint_torque;   ///< external torque [Nm]; not finite: not known
-    Frame pose;                        ///< pose of the tool, or of the flange without a tool, in
-                                       ///< the base frame
-    std::array<double, 3> force{};     ///< at the flange, in its axes [N]; not finite: not known
-    std::array<double, 3> torque{};    ///< [Nm]; not finite: not known
-    int last_error = 0;                ///< never reset: see errorText()
-    bool force_condition_met = false;  ///< the force condition ended the last motion
-    bool ready = false;                ///< the cabinet is ready to move
-    bool active = false;               ///< a motion is under way
+    /// Whether the command was executed or scheduled; false for `state`.
+    bool executed = false;
+    /// Joint position [rad].
+    device::JointArray position;
+    /// Joint velocity by differences over some 10 ms [rad/s].
+    device::JointArray velocity;
+    /// External torque of each joint [N m]; not finite: not known.
+    device::JointArray joint_torque;
+    /// Pose of the tool, or of the flange without a tool, in the base frame [m, rad].
+    Frame pose;
+    /// External force at the flange, in its axes [N]; not finite: not known.
+    std::array<double, 3> force{};
+    /// External torque at the flange, in its axes [N m]; not finite: not known.
+    std::array<double, 3> torque{};
+    /// Last error of the cabinet, which is never reset: see errorText().
+    int last_error = 0;
+    /// Whether the force condition ended the last motion.
+    bool force_condition_met = false;
+    /// Whether the cabinet is ready to move.
+    bool ready = false;
+    /// Whether a motion is under way.
+    bool active = false;
 };
 
 /// Reason why a state cannot be used.
 struct StateError {
     enum class Kind : std::uint8_t {
-        size,          ///< `value` bytes
-        not_a_flag,    ///< `element` is `value`, neither 0 nor 1
-        not_finite,    ///< `element`
-        out_of_range,  ///< `element` is `value`
+        /// The state has `value` bytes instead of stateSize().
+        size,
+        /// `element` is `value`, neither 0 nor 1.
+        not_a_flag,
+        /// `element` is not finite.
+        not_finite,
+        /// `element` is `value`, which no arm of this kind can have: over 6.3 rad, 50 rad/s or 10
+        /// m.
+        out_of_range,
     };
+    /// Kind of the error.
     Kind kind = Kind::size;
-    std::size_t element = 0;  ///< index from 0, as in docs/protocols/iiwa.md#state
+    /// Index from 0, as in docs/protocols/iiwa.md#state.
+    std::size_t element = 0;
+    /// Number that was received.
     double value = 0.0;
 };
 /// Error text for a person. The code is connection_lost, since the two sides no longer understand
@@ -101,7 +139,8 @@ Error toError(const StateError& error);
 tl::expected<CabinetState, StateError> parseState(std::span<const std::byte> bytes,
                                                   Precision precision) noexcept;
 
-/// Meaning of an error code of the cabinet; "" if there is no error.
+/// Meaning of an error code of the cabinet; "" if there is no error. Valid for ever. Threads: any;
+/// pure.
 std::string_view errorText(int code) noexcept;
 
 }  // namespace metier::iiwa_driver
