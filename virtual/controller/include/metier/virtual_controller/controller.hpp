@@ -19,21 +19,27 @@ namespace metier::virtual_controller {
 /// An act of a person or an accident that a controller suffers, named as for `metier virtual
 /// inject`.
 struct Injection {
-    std::string name;   ///< such as "emergency-stop"
-    std::string value;  ///< its argument as text; may be empty
+    /// Name of the injection: "emergency-stop".
+    std::string name;
+    /// Its argument as text, in the unit that its help names; may be empty.
+    std::string value;
 };
 
+/// An injection that a controller supports.
 struct InjectionHelp {
+    /// Name of the injection.
     std::string name;
-    std::string help;  ///< one line; names the argument, its unit and range
-    /// Performs it with the argument. Errors: invalid_argument.
+    /// One line for a person; names the argument, its unit and range.
+    std::string help;
+    /// Performs it with the argument. Runs on the controller's thread; must not wait.
+    /// Errors: invalid_argument.
     std::function<Result<void>(const std::string& value)> perform{};
 };
 
 /// An injection that needs no argument and cannot fail.
 std::function<Result<void>(const std::string& value)> always(std::function<void()> act);
 
-/// Performs the one of `known` that has the name.
+/// Performs the one of `known` that has the name. Threads: the controller's.
 /// Errors: not_found, with the known names; those of the injection.
 Result<void> performOneOf(const std::vector<InjectionHelp>& known, const Injection& injection);
 
@@ -54,25 +60,38 @@ public:
     }
     /// State seen from outside: modes, joint position [rad], width [m], ...
     virtual nlohmann::ordered_json state() const = 0;
-    /// Switches the power off and on: every connection breaks, every mode is the initial one.
+    /// Switches the power off and on: every connection breaks, every mode is the initial one. Does
+    /// not wait.
     virtual void restart() = 0;
 };
 
 /// Request to make a virtual controller.
 struct ControllerRequest {
+    /// Context whose thread runs the controller; outlives it.
     asio::io_context& context;
+    /// Name of the controller in the cell file, for messages and the world.
     std::string name;
-    std::string address;      ///< address to listen on, such as 127.0.1.1
-    cell::Settings settings;  ///< settings of the controller, which calls finish()
-    const motion::RobotModel* model = nullptr;  ///< model of the arm; nullptr for other devices
-    LinkFaults& faults;                         ///< outlives the controller
-    WorldLink& world;                           ///< outlives the controller
+    /// Address to listen on: "127.0.1.1".
+    std::string address;
+    /// Settings of the controller, which calls finish().
+    cell::Settings settings;
+    /// Model of the arm, outlives the controller; nullptr for other devices.
+    const motion::RobotModel* model = nullptr;
+    /// Faults of its cable; outlives the controller.
+    LinkFaults& faults;
+    /// The cell around it; outlives the controller.
+    WorldLink& world;
 };
 
 /// One kind of virtual controller. To add one: docs/guide/add-a-robot.md.
 struct ControllerType {
-    std::string_view name;  ///< name in a cell file: `type = "ur"`
+    /// Name in a cell file, unique: `type = "ur"`.
+    std::string_view name;
+    /// One line for a person: maker, controllers, protocol.
     std::string_view help;
+    /// Opens the ports and serves once the io_context runs.
+    /// Errors: invalid_argument (settings), already_exists (a port); others as the controller
+    ///         states.
     Result<std::unique_ptr<Controller>> (*start)(const ControllerRequest& request);
 };
 

@@ -19,12 +19,14 @@ public:
     /// Begins at once; the first call is one period later.
     /// \param context must outlive the timer
     /// \param period  > 0
+    /// \param cycle   must not throw, nor destroy the timer
     CycleTimer(asio::io_context& context, std::chrono::nanoseconds period,
                std::function<void()> cycle);
     CycleTimer(const CycleTimer&) = delete;
     CycleTimer& operator=(const CycleTimer&) = delete;
 
     /// Sets the period from the next call on; the grid begins anew there.
+    /// \param period > 0
     void setPeriod(std::chrono::nanoseconds period) noexcept { next_period_ = period; }
 
 private:

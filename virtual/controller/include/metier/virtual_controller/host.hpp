@@ -16,13 +16,20 @@ namespace metier::virtual_controller {
 
 /// Options of a host.
 struct HostOptions {
+    /// Name of the controller in the cell file.
     std::string name;
-    std::string type;     ///< a name of controllerTypes()
-    std::string address;  ///< address of every port, such as 127.0.1.1
+    /// Name of one of controllerTypes().
+    std::string type;
+    /// Address of every port: "127.0.1.1".
+    std::string address;
+    /// Settings of the controller.
     cell::Settings settings;
+    /// Model of the arm, must outlive the host; nullptr for other devices.
     const motion::RobotModel* model = nullptr;
-    std::string world_address;          ///< empty: no world
-    std::uint16_t control_port = 7400;  ///< 0: a free one
+    /// Address of the world's process; empty: no world.
+    std::string world_address;
+    /// TCP port for injections; 0: a free one.
+    std::uint16_t control_port = 7400;
 };
 
 /// One virtual controller with its control port, which takes injections and shows the state: each
@@ -31,19 +38,23 @@ struct HostOptions {
 /// Threading: one thread makes, runs and destroys it; stop() from any.
 class Host {
 public:
+    /// Makes the controller and opens the control port; run() serves.
     /// Errors: invalid_argument (unknown type with the known ones, settings), already_exists
-    /// (port).
+    ///         (port); those of the controller.
     static Result<std::unique_ptr<Host>> start(HostOptions options,
                                                const std::vector<ControllerType>& types);
     ~Host();
 
-    /// Runs the controller until stop().
+    /// Runs the controller until stop(), on the calling thread.
     void run() { context_.run(); }
+    /// Ends run() soon. Any thread; does not wait.
     void stop() { context_.stop(); }
     /// Ends run() once no peer is connected to the controller, at the latest after `longest`: a
     /// driver that is about to end brakes its arm first. Any thread; does not wait.
     void stopOnceAlone(std::chrono::milliseconds longest);
+    /// Context that run() runs; for tests that add work of their own.
     asio::io_context& context() noexcept { return context_; }
+    /// The controller; valid as long as this.
     Controller& controller() noexcept { return *controller_; }
     /// Port of the control port, also if a free one was chosen.
     std::uint16_t controlPort() const { return control_->port(); }

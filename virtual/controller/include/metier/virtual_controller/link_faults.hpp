@@ -13,7 +13,7 @@ namespace metier::virtual_controller {
 struct LinkFaults {
     /// A pulled cable: nothing is sent, received or accepted, and neither side is notified.
     std::atomic<bool> cut{false};
-    /// Delay of all sent bytes [ms].
+    /// Delay of all sent bytes [ms]; 0: none.
     std::atomic<std::uint32_t> delay_ms{0};
     /// Number of the next sent packets that get one changed byte.
     std::atomic<std::uint32_t> garble{0};

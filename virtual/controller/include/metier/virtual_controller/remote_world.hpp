@@ -21,7 +21,10 @@ public:
     /// TCP port of the world, unless another one is given.
     static constexpr std::uint16_t kPort = 7410;
 
-    /// \param name name of this controller in the world's settings
+    /// Begins to connect.
+    /// \param context must outlive this
+    /// \param name    name of this controller in the world's settings
+    /// \param address IP address of the world's process
     RemoteWorld(asio::io_context& context, std::string name, std::string address,
                 std::uint16_t port = kPort);
     RemoteWorld(const RemoteWorld&) = delete;
@@ -30,6 +33,7 @@ public:
     /// Sends the newest report as soon as the world has answered the one before; older ones are
     /// dropped.
     void report(const WorldReport& report) override;
+    /// Newest effect; an empty one while the world cannot be reached.
     const WorldEffect& effect() const override { return effect_; }
 
 private:

@@ -20,6 +20,7 @@ public:
 
     /// Takes the position; call it once per cycle.
     /// \param position true position of each axis [rad]
+    /// \param now      time of the cycle, not before that of the last call
     void take(std::span<const double> position, SteadyTime now);
 
     /// Time from the last motion to `now`; zero before the first take().

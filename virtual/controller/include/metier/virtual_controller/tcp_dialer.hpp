@@ -18,13 +18,18 @@ namespace metier::virtual_controller {
 /// all called there.
 class TcpDialer {
 public:
+    /// Both ends of the connection.
     struct Route {
-        std::string from;      ///< address of the controller; the peer sees it if both are loopback
-                               ///< addresses
-        std::string to;        ///< address to connect to
-        std::uint16_t port{};  ///< > 0
+        /// IP address of the controller; the peer sees it if both are loopback addresses.
+        std::string from;
+        /// IP address to connect to.
+        std::string to;
+        /// TCP port to connect to, > 0.
+        std::uint16_t port{};
     };
+    /// Functions that the dialer calls, on the thread of the io_context.
     struct Handlers {
+        /// Handlers of the open connection.
         TcpServer::Handlers peer;
         /// Reports that no peer answered; the owner calls dial() again when it likes.
         std::function<void(const Error& error)> on_failed;

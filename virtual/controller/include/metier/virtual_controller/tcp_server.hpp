@@ -26,6 +26,7 @@ public:
     /// Queues bytes, which are sent in order; does not wait. A peer that leaves 1 MB unread is
     /// disconnected.
     virtual void send(std::span<const std::byte> bytes) = 0;
+    /// The same for text.
     void send(std::string_view text) { send(std::as_bytes(std::span(text))); }
     /// Sends the queued bytes, then closes. on_closed follows.
     virtual void close() = 0;
@@ -37,6 +38,7 @@ public:
     virtual const std::string& address() const = 0;
 };
 
+/// Reads an IPv4 or IPv6 address. Threads: any; pure.
 /// Errors: invalid_argument (not an address).
 Result<asio::ip::address> parseAddress(const std::string& text);
 
@@ -46,7 +48,9 @@ Result<asio::ip::address> parseAddress(const std::string& text);
 /// all called there.
 class TcpServer {
 public:
+    /// Functions that the server calls, on the thread of the io_context.
     struct Handlers {
+        /// A peer has connected; it may be sent to at once.
         std::function<void(TcpPeer&)> on_connected;
         /// Receives the bytes of one read: part of a packet, or several packets.
         std::function<void(TcpPeer&, std::span<const std::byte>)> on_data;
@@ -54,6 +58,8 @@ public:
         std::function<void(TcpPeer&)> on_closed;
     };
 
+    /// Opens the port.
+    /// \param context must outlive the server
     /// \param address an address of this machine; any 127.x.y.z is one
     /// \param port    0: a free one
     /// \param faults  must outlive the server

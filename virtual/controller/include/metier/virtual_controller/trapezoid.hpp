@@ -5,11 +5,14 @@
 
 namespace metier::virtual_controller {
 
-/// Distance along a path from rest to rest: speeds up, drives, brakes.
+/// Distance along a path from rest to rest: speeds up, drives, brakes. The unit of length is the
+/// caller's: m or rad; time is in s.
+///
+/// Threading: a value; any thread.
 class Trapezoid {
 public:
     /// \param length       >= 0
-    /// \param velocity     largest, > 0
+    /// \param velocity     largest, > 0; a short length does not reach it
     /// \param acceleration > 0
     Trapezoid(double length, double velocity, double acceleration)
         : length_(length),
@@ -33,6 +36,7 @@ public:
         return other;
     }
 
+    /// Distance from the start; 0 before the begin, `length` after the end.
     /// \param time [s] since the start
     double at(double time) const {
         const double t = std::clamp(time, 0.0, duration_);
@@ -43,7 +47,8 @@ public:
         return left < ramp_ ? length_ - 0.5 * acceleration_ * left * left
                             : velocity_ * (t - 0.5 * ramp_);
     }
-    double duration() const { return duration_; }  ///< [s]
+    /// Time from start to rest [s].
+    double duration() const { return duration_; }
     /// Time at which it begins to brake [s].
     double brakingFrom() const { return duration_ - ramp_; }
 

@@ -11,12 +11,18 @@
 
 namespace metier::virtual_controller {
 
+/// Content of a package.
 using Bytes = std::vector<std::byte>;
 
-/// Appends numbers to a package, most significant byte first.
+/// Appends numbers to a package, most significant byte first (big-endian):
+///
+///     send(ByteWriter().put(std::uint16_t{8}).put(0.5).text("ok").content());
+///
+/// Threading: a value; one thread.
 class ByteWriter {
 public:
     template <typename T>
+    /// Appends one number in the size of its type; a bool as one byte, floating point as IEEE 754.
     requires std::is_arithmetic_v<T> ByteWriter& put(T value) {
         if constexpr (std::same_as<T, bool>) {
             return put(static_cast<std::uint8_t>(value));
@@ -34,37 +40,46 @@ public:
     }
     template <typename Range>
     requires requires(const Range& range) { range.begin(); }
+    /// Appends every element of a range, in order.
     ByteWriter& putAll(const Range& values) {
         for (const auto& value : values) {
             put(value);
         }
         return *this;
     }
+    /// Appends the bytes of a text, without an end.
     ByteWriter& text(std::string_view text) {
         const auto bytes = std::as_bytes(std::span(text));
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
         return *this;
     }
+    /// Appends that many zero bytes.
     ByteWriter& zeros(std::size_t count) {
         bytes_.resize(bytes_.size() + count);
         return *this;
     }
+    /// Appends bytes as they are.
     ByteWriter& bytes(std::span<const std::byte> bytes) {
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
         return *this;
     }
+    /// All bytes so far; valid until the next call.
     const Bytes& content() const { return bytes_; }
 
 private:
     Bytes bytes_;
 };
 
-/// Takes numbers from a package. Reading beyond its end gives zeros and is noted.
+/// Takes numbers from a package, most significant byte first. Reading beyond its end gives zeros
+/// and is noted: test complete() once at the end.
+///
+/// Threading: a value; one thread. The bytes must outlive it.
 class ByteReader {
 public:
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
     template <typename T>
+    /// Takes the next number, as ByteWriter::put() wrote it.
     requires std::is_arithmetic_v<T> T get() {
         if constexpr (std::same_as<T, bool>) {
             return get<std::uint8_t>() != 0;
@@ -86,9 +101,11 @@ public:
             return static_cast<T>(bits);
         }
     }
+    /// The bytes that were not taken yet, as text; does not take them.
     std::string_view rest() const {
         return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};  // NOLINT: text
     }
+    /// Number of bytes that were not taken yet.
     std::size_t left() const { return bytes_.size(); }
     /// Reports whether every requested byte was there.
     bool complete() const { return complete_; }

@@ -9,8 +9,8 @@ namespace metier::virtual_controller {
 
 /// Effect of the world on one controller's device.
 struct WorldEffect {
-    /// Wrench on the flange, in the flange frame, from contact with a wall and the weight of a held
-    /// part.
+    /// Wrench on the flange, in the flange frame [N, N m], from contact with a wall and the weight
+    /// of a held part.
     motion::Wrench wrench{};
     /// Width of the part between the jaws [m]; empty: no part.
     std::optional<double> part_width{};
@@ -20,9 +20,12 @@ struct WorldEffect {
 struct WorldReport {
     /// The device's own time [s], counted in cycles, however late these are calculated.
     double time = 0.0;
+    /// Pose of the arm's flange in its base frame.
     std::optional<motion::Pose> base_from_flange{};
-    std::optional<double> jaw_width{};  ///< [m]
-    /// The jaws press on a part. The part is held from then on until they are wider than it.
+    /// Distance between a gripper's jaws [m].
+    std::optional<double> jaw_width{};
+    /// Whether the jaws press on a part. The part is held from then on until they are wider than
+    /// it.
     bool gripping = false;
 };
 

@@ -11,30 +11,43 @@ namespace metier::joint_simulator {
 
 /// Limits of one axis in the simulated controller.
 struct AxisLimits {
-    double lower = 0.0;         ///< [rad]
-    double upper = 0.0;         ///< [rad]
-    double velocity = 0.0;      ///< [rad/s], > 0
-    double acceleration = 0.0;  ///< [rad/s2], > 0; the controller's own stop brakes with it
+    /// Lowest position [rad].
+    double lower = 0.0;
+    /// Highest position [rad].
+    double upper = 0.0;
+    /// Largest |velocity| [rad/s], > 0.
+    double velocity = 0.0;
+    /// Largest |acceleration| [rad/s2], > 0; the controller's own stop brakes with it.
+    double acceleration = 0.0;
 };
 
 /// Amounts by which a set-point may exceed a limit before the controller stops the arm.
 struct GuardTolerance {
-    double position = 1e-6;      ///< [rad]
-    double velocity = 0.01;      ///< part of the limit
-    double acceleration = 0.05;  ///< part of the limit
+    /// Amount for positions [rad].
+    double position = 1e-6;
+    /// Amount for velocities, as a part of the limit.
+    double velocity = 0.01;
+    /// Amount for accelerations, as a part of the limit.
+    double acceleration = 0.05;
 };
 
 /// A limit that a set-point broke; without text, so that a cycle thread can make it.
 struct Violation {
+    /// Quantity that is beyond its limit.
     enum class Quantity : std::uint8_t { position, velocity, acceleration, not_finite, axis_count };
 
+    /// The first quantity found.
     Quantity quantity = Quantity::position;
-    std::size_t axis = 0;  ///< from 0
+    /// Axis, from 0; not used for axis_count.
+    std::size_t axis = 0;
+    /// Value of the set-point [rad], [rad/s] or [rad/s2]; for axis_count, its number of axes.
     double value = 0.0;
+    /// Limit that it broke, in the same unit.
     double limit = 0.0;
 };
 
-/// A sentence for a person, with axis (from 1), value, limit and unit.
+/// A sentence for a person, with axis (from 1), value, limit and unit. Allocates. Threads: any;
+/// pure.
 std::string toText(const Violation& violation);
 
 /// Checks each set-point against the last two by finite differences over one cycle, as a real
@@ -44,10 +57,12 @@ std::string toText(const Violation& violation);
 /// Threading: one thread, the cycle. Does not allocate.
 class Guard {
 public:
-    /// \param cycle [s], > 0
+    /// Begins at zero, standing still: call reset().
+    /// \param limits one per axis
+    /// \param cycle  [s], > 0
     Guard(std::vector<AxisLimits> limits, GuardTolerance tolerance, double cycle);
 
-    /// Takes a set-point, or leaves the guard unchanged and returns the broken limit.
+    /// Takes a set-point [rad], or leaves the guard unchanged and returns the broken limit.
     std::optional<Violation> accept(const device::JointArray& set_point) noexcept;
 
     /// Brakes each axis by one cycle as hard as its limit allows.
@@ -57,8 +72,11 @@ public:
     /// Sets the arm at a position, standing still.
     void reset(const device::JointArray& position) noexcept;
 
-    const device::JointArray& position() const noexcept { return position_; }  ///< [rad]
-    const device::JointArray& velocity() const noexcept { return velocity_; }  ///< [rad/s]
+    /// Position of the last set-point or cycle of braking [rad].
+    const device::JointArray& position() const noexcept { return position_; }
+    /// Velocity at that time, by the difference over one cycle [rad/s].
+    const device::JointArray& velocity() const noexcept { return velocity_; }
+    /// Whether no axis moves.
     bool standing() const noexcept;
 
 private:

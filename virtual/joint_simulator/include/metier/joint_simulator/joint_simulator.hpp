@@ -17,22 +17,35 @@ namespace metier::joint_simulator {
 
 /// Properties of a simulated arm.
 struct JointSimulatorOptions {
+    /// Name of the arm in messages.
     std::string name;
-    std::vector<std::string> axis_names;  ///< 1 to device::kMaxAxes
-    std::vector<AxisLimits> limits;       ///< one per axis
-    std::vector<double> start_position;   ///< [rad], within the limits
-    std::chrono::nanoseconds cycle{};     ///< > 0
+    /// One name per axis, 1 to device::kMaxAxes.
+    std::vector<std::string> axis_names;
+    /// Limits of the simulated controller, one per axis.
+    std::vector<AxisLimits> limits;
+    /// Position at the start [rad], within the limits.
+    std::vector<double> start_position;
+    /// Period of the controller, > 0.
+    std::chrono::nanoseconds cycle{};
+    /// Amounts by which a set-point may exceed a limit.
     GuardTolerance tolerance;
-    std::size_t delay_cycles = 2;    ///< dead time from set-point to measured arm, <=
-                                     ///< kMaxDelayCycles
-    double time_constant = 0.0;      ///< time constant of the lag after that [s]; 0: no lag
-    double standstill_speed = 1e-3;  ///< below it the measured arm counts as standing [rad/s]
+    /// Dead time from set-point to measured arm [cycles], <= kMaxDelayCycles.
+    std::size_t delay_cycles = 2;
+    /// Time constant of the lag after that [s]; 0: no lag.
+    double time_constant = 0.0;
+    /// Speed below which the measured arm counts as standing [rad/s].
+    double standstill_speed = 1e-3;
 };
 
+/// State of the emergency stop's button.
 enum class EmergencyStop : std::uint8_t { released, pressed };
 
 /// A simulated robot arm: follows set-points with a lag, checks each with its own guard and stops
 /// by itself when one breaks a limit.
+///
+///     auto arm = JointSimulator::create(optionsFor(model));
+///     (*arm)->attach(source);
+///     for (int cycle = 0; cycle < 100; ++cycle) { (*arm)->step(); }
 ///
 /// It has no thread: cycle() is one period of the controller and the only thing that makes time
 /// pass. Tests move time by hand with step(); SimulatorDrive runs the arm at its real rate.
@@ -69,7 +82,7 @@ public:
     /// \param missed    cycles so far that began more than one period late
     /// \return whether dispatch() has something to report
     bool cycle(SteadyTime scheduled, std::uint64_t missed) noexcept;
-    /// Notes how late the cycle thread woke up. Cycle thread only.
+    /// Notes how late the cycle thread woke up, for cycleJitter(). Cycle thread only.
     void measure(std::chrono::nanoseconds late) noexcept {
         jitter_.add(std::chrono::duration<double>(late).count());
     }
@@ -77,13 +90,16 @@ public:
     /// Calls ended() of a released source and the safety callbacks. Not from the cycle thread.
     void dispatch();
 
-    /// cycle() on a time base of its own, then dispatch(): for tests with time moved by hand.
+    /// Runs cycle() on a time base of its own, then dispatch(): for tests with time moved by hand.
     void step();
 
-    /// Acts of people and accidents on an arm; each takes effect in the next cycle. Any thread.
+    /// Stops the arm, as its controller would after a collision. This and the next acts of people
+    /// and accidents take effect in the next cycle. Any thread.
     /// \param text the controller's reason
     void protectiveStop(std::string text);
+    /// Presses or releases the button; a pressed one stops the arm.
     void emergencyStop(EmergencyStop button) noexcept;
+    /// Lets the controller be gone: the safety state is disconnected.
     void disconnect() noexcept;
     /// The arm answers again; its safety state is normal if there is no other reason for a stop.
     void reconnect() noexcept;

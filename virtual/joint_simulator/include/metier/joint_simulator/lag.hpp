@@ -20,14 +20,16 @@ public:
     /// \param cycle         period [s], > 0
     Lag(std::size_t delay_cycles, double time_constant, double cycle) noexcept;
 
-    /// Sets the arm at a position, standing still.
+    /// Sets the arm at a position [rad], standing still.
     void reset(const device::JointArray& position) noexcept;
 
-    /// Advances by one cycle in which `commanded` was the set-point.
+    /// Advances by one cycle in which `commanded` [rad] was the set-point.
     void advance(const device::JointArray& commanded) noexcept;
 
-    const device::JointArray& position() const noexcept { return position_; }  ///< measured [rad]
-    const device::JointArray& velocity() const noexcept { return velocity_; }  ///< [rad/s]
+    /// Measured position [rad].
+    const device::JointArray& position() const noexcept { return position_; }
+    /// Measured velocity [rad/s].
+    const device::JointArray& velocity() const noexcept { return velocity_; }
 
 private:
     std::size_t delay_cycles_;

@@ -10,7 +10,7 @@ namespace metier::joint_simulator {
 ///
 /// Motions are planned with the model's accelerations; the simulated drives allow twice as much,
 /// since a Halt brakes twice as hard. Only numbers are taken from the model: the guard that checks
-/// the set-points is the simulator's own.
+/// the set-points is the simulator's own. Threads: any; pure.
 JointSimulatorOptions optionsFor(const motion::RobotModel& model);
 
 }  // namespace metier::joint_simulator

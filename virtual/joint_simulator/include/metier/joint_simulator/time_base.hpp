@@ -18,9 +18,11 @@ namespace metier::joint_simulator {
 /// Threading: a value, used by one thread; reads no clock.
 class TimeBase {
 public:
+    /// Longest delay that is caught up.
     static constexpr std::chrono::milliseconds kLongestCatchUp{100};
 
-    /// \param first time at which the first cycle is due
+    /// \param first  time at which the first cycle is due
+    /// \param period > 0
     TimeBase(SteadyTime first, std::chrono::nanoseconds period) noexcept
         : next_(first), period_(period) {}
 

@@ -10,11 +10,12 @@ namespace metier::urscript {
 
 struct Code;  // private
 
+/// Kind of a program.
 enum class ProgramKind {
-    primary,    ///< `def NAME():`, or statements alone: may move the arm, replaces the running
-                ///< program
-    secondary,  ///< `sec NAME():`: runs beside the primary program in one cycle, never moves the
-                ///< arm
+    /// `def NAME():`, or statements alone: may move the arm, replaces the running program.
+    primary,
+    /// `sec NAME():`: runs beside the primary program in one cycle, never moves the arm.
+    secondary,
 };
 
 /// A parsed script with resolved names; it can be run any number of times.
@@ -35,6 +36,7 @@ public:
 
     /// Name of the program; empty for an anonymous one.
     const std::string& name() const;
+    /// Kind by its first line.
     ProgramKind kind() const;
     /// Internal form for the interpreter; not for other callers.
     const std::shared_ptr<const Code>& code() const { return code_; }

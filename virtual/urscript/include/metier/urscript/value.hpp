@@ -12,11 +12,14 @@
 
 namespace metier::urscript {
 
+/// Three numbers along x, y, z.
 using Vector3 = std::array<double, 3>;
+/// One number per joint, axis 1 first; or x, y, z and about x, y, z.
 using Vector6 = std::array<double, 6>;
 
 /// A pose `p[x, y, z, rx, ry, rz]`: x, y, z [m] and the rotation vector rx, ry, rz [rad].
 struct Pose {
+    /// x, y, z [m], rx, ry, rz [rad].
     Vector6 value{};
     friend bool operator==(const Pose&, const Pose&) = default;
 };
@@ -27,10 +30,13 @@ class Value;
 /// until one of them is changed.
 class List {
 public:
+    /// An empty list.
     List() = default;
     explicit List(std::vector<Value> elements);
 
+    /// All elements, in order; valid until the list is changed.
     const std::vector<Value>& elements() const;
+    /// Number of elements.
     std::size_t size() const;
     /// Number of values in this list and in the lists inside it.
     std::size_t weight() const { return weight_; }
@@ -38,7 +44,8 @@ public:
     std::size_t characters() const { return characters_; }
     /// Depth of nested lists, at least 1: 1 for a list of numbers.
     int depth() const { return depth_; }
-    /// \param index less than size()
+    /// Replaces an element; copies of the list keep theirs.
+    /// \param index less than size(), which is not checked
     void set(std::size_t index, Value value);
 
 private:
@@ -53,8 +60,10 @@ private:
 /// Threading: one thread, since copies share their elements.
 class Value {
 public:
+    /// Content; std::monostate is a variable without a value.
     using Data = std::variant<std::monostate, bool, std::int32_t, double, std::string, List, Pose>;
 
+    /// No value.
     Value() = default;
     Value(bool value) : data_(value) {}                      // NOLINT: a value is a value
     Value(std::int32_t value) : data_(value) {}              // NOLINT
@@ -66,9 +75,11 @@ public:
     Value(const Vector6& numbers);                           // NOLINT
     Value(std::vector<Value> elements) : data_(List(std::move(elements))) {}  // NOLINT
 
+    /// Content, to be visited.
     const Data& data() const { return data_; }
     Data& data() { return data_; }
     template <typename T>
+    /// Content of that type, or nullptr.
     const T* get() const {
         return std::get_if<T>(&data_);
     }
@@ -76,7 +87,9 @@ public:
     T* get() {
         return std::get_if<T>(&data_);
     }
+    /// Whether there is no value.
     bool isNone() const { return data_.index() == 0; }
+    /// Whether it is an integer or a floating-point number.
     bool isNumber() const { return get<std::int32_t>() != nullptr || get<double>() != nullptr; }
     /// The number; 0 if the value is no number.
     double number() const;
