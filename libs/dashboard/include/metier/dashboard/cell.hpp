@@ -14,25 +14,32 @@ namespace metier::dashboard {
 
 /// Mount of a gripper, as given by the world of the virtual controllers.
 struct GripperMount {
-    std::string on;  ///< name of the server of the arm that carries it; empty: no arm
+    /// Name of the server of the arm that carries it; empty: no arm.
+    std::string on;
+    /// Place of the jaws on the flange [m, rad].
     Frame flange_from_jaws{};
 };
 
 /// A server to be shown, and what the cell file says of it.
 struct CellServer {
-    std::string name;  ///< for people, unique; part of the keys of its skills
-    std::string url;   ///< "opc.tcp://host:port"
+    /// Name for people, unique; part of the keys of its skills.
+    std::string name;
+    /// Address: "opc.tcp://host:port".
+    std::string url;
     /// Name of the server whose arm this server's skills move; empty: its own, or the one that the
     /// server publishes.
     std::string arm_of{};
     /// Names of the servers whose skills this server uses, as far as the cell file says.
     std::vector<std::string> uses{};
-    std::optional<Frame> world_from_base{};  ///< of its arm; none: not known
+    /// Place of its arm's base in the world [m, rad]; none: not known.
+    std::optional<Frame> world_from_base{};
+    /// Mount of its gripper; none: it has none, or it is not known.
     std::optional<GripperMount> gripper{};
 };
 
 /// Control port of the virtual controllers' world.
 struct CellWorld {
+    /// IP address and TCP port.
     std::string address;
     std::uint16_t port = 7400;
     /// Table and walls, in the form in which they are sent to browsers
@@ -41,20 +48,26 @@ struct CellWorld {
 
 /// Cell to be shown.
 struct Cell {
+    /// Name of the cell, for people.
     std::string name;
+    /// Servers to be shown, in this order.
     std::vector<CellServer> servers;
+    /// World of the virtual controllers; none: there is none.
     std::optional<CellWorld> world{};
-    std::string records{};  ///< as cell::Records::url
+    /// Place of the servers' records, as cell::Records::url.
+    std::string records{};
 };
 
 /// Addresses by name, from the file of `metier up --endpoints`; used instead of those of the cell
 /// file.
 struct Endpoints {
+    /// Addresses "opc.tcp://..." by the servers' names.
     std::map<std::string, std::string> servers;
+    /// IP addresses by the virtual controllers' names.
     std::map<std::string, std::string> virtual_controllers;
 };
 
-/// Reads the file of `metier up --endpoints`.
+/// Reads the file of `metier up --endpoints`. Waits for the disk.
 /// Errors: not_found, invalid_argument, with the file's name.
 Result<Endpoints> loadEndpoints(const std::string& file);
 

@@ -8,7 +8,8 @@
 
 namespace metier::dashboard {
 
-/// Settings for connections of this program to servers. The functions are called on any thread.
+/// Settings for connections of this program to servers. The functions are called on any thread,
+/// several at a time; they may wait for the disk and the network.
 struct Connector {
     /// Options for a connection as secure as that server wants it, as this program's own user.
     /// Errors: shown on the page.

@@ -7,11 +7,16 @@ namespace metier::http {
 
 /// Limits for the clients of an HTTP server.
 struct HttpLimits {
-    std::size_t connections = 256;     ///< at the same time, streams among them
-    std::size_t tabs = 128;            ///< streams at the same time
-    std::size_t head_bytes = 16'384;   ///< request line and header fields
-    std::size_t body_bytes = 262'144;  ///< of one request
-    /// Waiting to be sent to one stream; beyond it the stream is cut
+    /// Largest number of connections at the same time, streams among them; a further one is
+    /// refused.
+    std::size_t connections = 256;
+    /// Largest number of streams at the same time.
+    std::size_t tabs = 128;
+    /// Largest request line with its header fields [byte].
+    std::size_t head_bytes = 16'384;
+    /// Largest body of one request [byte].
+    std::size_t body_bytes = 262'144;
+    /// Largest amount that waits to be sent to one stream [byte]; beyond it the stream is cut.
     std::size_t waiting_bytes = 2'097'152;
     /// Longest time in which one request must arrive
     std::chrono::milliseconds request_time{10'000};

@@ -21,11 +21,14 @@ class Connection;
 /// Set all routes before serve(). Threading: handlers run on the connections' threads.
 class HttpServer final : public httplib::Server {
 public:
+    /// \param limits for all clients together; nothing is open yet
     explicit HttpServer(const HttpLimits& limits);
     /// Call end() before, once serve() has succeeded.
     ~HttpServer() override;
 
-    /// Opens the port and serves from then on.
+    /// Opens the port and serves from then on. Call it once.
+    /// \param address IP address of this machine
+    /// \param port    0: a free one
     /// \return the port
     /// Errors: already_exists (the port is taken, or the address is not one of this machine).
     Result<std::uint16_t> serve(const std::string& address, std::uint16_t port);

@@ -13,11 +13,16 @@ namespace metier::path_evaluation {
 
 /// State of all axes at one instant; all vectors have the same size.
 struct MotionSample {
-    double time = 0;                   ///< time after the start [s]
-    motion::JointVector position;      ///< [rad]
-    motion::JointVector velocity;      ///< [rad/s]
-    motion::JointVector acceleration;  ///< [rad/s2]
-    motion::JointVector jerk;          ///< [rad/s3]
+    /// Time after the start [s].
+    double time = 0;
+    /// Joint position [rad].
+    motion::JointVector position;
+    /// Joint velocity [rad/s].
+    motion::JointVector velocity;
+    /// Joint acceleration [rad/s2].
+    motion::JointVector acceleration;
+    /// Joint jerk [rad/s3].
+    motion::JointVector jerk;
 };
 
 /// Samples of a planned motion at equal times, both ends included. Position, velocity and
@@ -32,6 +37,7 @@ std::vector<MotionSample> sampleMotion(const MotionRecord& record);
 /// Quantity of a sample.
 enum class Quantity { position, velocity, acceleration, jerk };
 
+/// That quantity of all axes; valid as long as the sample.
 const motion::JointVector& valuesOf(const MotionSample& sample, Quantity quantity) noexcept;
 
 /// A value as a share of its limit: -1 and 1 are the limits. For a position 0 is half way between
@@ -48,6 +54,7 @@ struct Peak {
 /// The highest peak of all axes; zeros without samples.
 Peak peakOf(std::span<const MotionSample> samples, const motion::RobotModel& model,
             Quantity quantity);
+/// The highest peak of one axis, counted from 0.
 Peak peakOfAxis(std::span<const MotionSample> samples, const motion::RobotModel& model,
                 Quantity quantity, std::size_t axis);
 
