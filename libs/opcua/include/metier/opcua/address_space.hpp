@@ -197,6 +197,11 @@ enum class MethodNodes {
 
 /// The nodes of a server: what clients see is made and changed here.
 ///
+///     auto lamp = nodes.addVariable({.node = {.parent = object, .browse_name = {1, "Lamp"}},
+///                                    .data_type = ids::kBoolean,
+///                                    .access = Access::read_write});
+///     nodes.setDataSource(*lamp, {.read = [&](const Session&) { return DataValue{...}; }});
+///
 /// Threading: the server's own thread; before start() the thread that created it. Nothing waits.
 /// Valid as long as the Server.
 /// Errors of every function: those of the table in status_code.hpp, not_found for an id that does

@@ -62,26 +62,42 @@ using Timeout = std::optional<std::chrono::milliseconds>;
 
 /// The attributes of nodes (OPC 10000-3, 5; numbers of OPC 10000-6, A.1).
 enum class AttributeId : std::uint32_t {
+    /// NodeId.
     node_id = 1,
+    /// Int32: a NodeClass.
     node_class = 2,
+    /// QualifiedName.
     browse_name = 3,
+    /// LocalizedText, in the server's language.
     display_name = 4,
+    /// LocalizedText; many nodes have none.
     description = 5,
+    /// Boolean, of types.
     is_abstract = 8,
+    /// Byte, of Objects: bit 0 if clients may subscribe to events.
     event_notifier = 12,
+    /// Value of a Variable.
     value = 13,
+    /// NodeId of the type of the value.
     data_type = 14,
+    /// Int32: -1 scalar, 1 one-dimensional array.
     value_rank = 15,
+    /// UInt32[]: length of each dimension, 0: any.
     array_dimensions = 16,
+    /// Byte, of Variables: bit 0 readable, bit 1 writable, for any user.
     access_level = 17,
+    /// Byte: the same for this session's user.
     user_access_level = 18,
+    /// Boolean, of Methods.
     executable = 21,
+    /// Boolean: whether this session may call the Method now.
     user_executable = 22,
 };
 
 /// An attribute to read.
 struct ReadItem {
     /// Node of the attribute.
+    /// Node whose references are read.
     NodeId node;
     /// Attribute to read.
     AttributeId attribute = AttributeId::value;
@@ -217,6 +233,10 @@ private:
 /// One session with one OPC UA server; without ClientOptions::security over a connection of
 /// SecurityPolicy None.
 ///
+///     auto client = Client::connect("opc.tcp://127.0.0.1:4840");
+///     if (!client) { ... client.error().message ... }
+///     auto state = (*client)->read(NodeId::parse("i=2259").value());
+///
 /// Every call has a deadline, and a broken connection ends all calls at once. No request is sent
 /// twice, after its deadline, or kept for later: without a connection a call fails at once.
 ///
@@ -237,9 +257,10 @@ private:
 /// state() and the destructor of a Subscription; waiting calls and close() are refused there.
 class Client {
 public:
-    /// Connects and activates a session; waits.
+    /// Connects and activates a session; waits, at most ClientOptions::connect_timeout.
+    /// \param url "opc.tcp://host:port"
     /// Errors: invalid_argument (the URL, a time that is not positive), connection_lost (no server
-    /// there), access_denied (user or password), timeout.
+    ///         there), access_denied (user or password), timeout.
     static Answer<std::unique_ptr<Client>> connect(const std::string& url,
                                                    ClientOptions options = {});
     /// Closes the session. Must not run in a callback.

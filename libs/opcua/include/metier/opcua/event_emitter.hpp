@@ -37,11 +37,14 @@ enum class EventAudience {
     auditors,
 };
 
-/// Raises events of one type.
+/// Raises events of one type:
 ///
-/// The stack makes a node for an event and lets Subscriptions pick its fields; making it costs
-/// a hundred times what raising does. So one node is made here and used for every event, which
-/// is sound because Subscriptions copy the fields when the event is raised.
+///     auto emitter = EventEmitter::create(server, type, {{{0, "ToState"}, {0, "Number"}}});
+///     emitter->emit({.source = object, .severity = 100, .fields = {Value::of(number)}});
+///
+/// The stack makes a node for an event and lets Subscriptions pick its fields; making it costs a
+/// hundred times what raising does. So one node is made here and used for every event, which is
+/// sound because Subscriptions copy the fields when the event is raised.
 ///
 /// Threading: the server's thread; must not outlive the Server.
 class EventEmitter {

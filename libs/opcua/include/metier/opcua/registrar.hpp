@@ -33,7 +33,10 @@ struct RegistrarOptions {
     std::optional<opcua::Credentials> security{};
 };
 
-/// Keeps a server registered at one discovery server, and removes the registration at its end.
+/// Keeps a server registered at one discovery server, and removes the registration at its end:
+///
+///     Registrar registrar({.discovery_url = "opc.tcp://lds:4840",
+///                          .server = {.application_uri = uri, .discovery_urls = {url}}});
 ///
 /// A failed registration is repeated for as long as this lives; only the registrar's own thread
 /// waits for it. A change between success and failure is logged once.

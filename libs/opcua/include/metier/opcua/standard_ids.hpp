@@ -5,6 +5,7 @@
 /// Nodes of namespace 0 that this project uses (OPC 10000-5, NodeIds of the standard).
 namespace metier::opcua::ids {
 
+// Data types, for VariableSpec::data_type and Argument::data_type.
 inline const NodeId kBoolean{0, 1U};
 inline const NodeId kInt32{0, 6U};
 inline const NodeId kUInt32{0, 7U};
@@ -16,6 +17,7 @@ inline const NodeId kStatusCode{0, 19U};
 inline const NodeId kLocalizedText{0, 21U};
 inline const NodeId kBaseDataType{0, 24U};
 
+// Types of references.
 inline const NodeId kOrganizes{0, 35U};
 inline const NodeId kHasEventSource{0, 36U};
 inline const NodeId kHasTypeDefinition{0, 40U};
@@ -26,6 +28,7 @@ inline const NodeId kHasNotifier{0, 48U};
 inline const NodeId kHierarchicalReferences{0, 33U};
 inline const NodeId kHasInterface{0, 17603U};
 
+// Types of Objects, Variables and events.
 inline const NodeId kBaseObjectType{0, 58U};
 inline const NodeId kFolderType{0, 61U};
 inline const NodeId kBaseDataVariableType{0, 63U};
@@ -45,6 +48,7 @@ inline const NodeId kAuditCertificateRevokedEventType{0, 2088U};
 inline const NodeId kAuditCertificateMismatchEventType{0, 2089U};
 inline const NodeId kAuditUpdateMethodEventType{0, 2127U};
 
+// Objects and Variables that every server has.
 inline const NodeId kObjectsFolder{0, 85U};
 inline const NodeId kServer{0, 2253U};
 inline const NodeId kServerAuditing{0, 2994U};
