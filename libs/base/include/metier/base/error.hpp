@@ -66,7 +66,10 @@ struct Error {
 /// A value, or the Error that explains why there is none.
 template <typename T = void>
 /// A value, or the Error that explains why there is none. Reading the value of a failed one is
-/// undefined: test it first.
+/// undefined: test it first:
+///
+///     if (const auto model = RobotModel::load(file); model) { use(*model); }
+///     else { print(model.error().message); }
 using Result = tl::expected<T, Error>;
 
 /// A failed Result: `return fail(Errc::not_found, "no axis 7");`

@@ -12,6 +12,14 @@ namespace metier {
 /// Threading: one writer thread, one reader thread. Neither locks, waits or allocates, so a cycle
 /// thread may be either. Several readers need one LatestValue each.
 template <typename T>
+/// Hands the newest value from one thread to another; older ones are overwritten:
+///
+///     LatestValue<double> speed;
+///     speed.write(0.5);                 // one thread
+///     const double now = speed.read();  // another one
+///
+/// Threading: one writer thread, one reader thread. Neither locks, waits or allocates, so a cycle
+/// thread may be either. Several readers need one LatestValue each, or a device::SharedValue.
 class LatestValue {
     static_assert(std::is_trivially_copyable_v<T>, "copied between threads byte by byte");
 

@@ -16,7 +16,10 @@ namespace metier {
 /// Threading: any number of producers and consumers. Not for a cycle thread: it locks.
 /// No call waits but popUntil(), which waits until its deadline at most.
 template <typename T>
-/// A bounded first-in-first-out queue between threads.
+/// A bounded first-in-first-out queue between threads:
+///
+///     while (auto job = jobs.popUntil(deadline)) { ... }  // consumer
+///     if (!jobs.tryPush(std::move(job))) { ... }          // producer: full or closed
 ///
 /// Threading: any number of producers and consumers. Not for a cycle thread: it locks.
 /// No call waits but popUntil(), which waits until its deadline at most. No thread may use it when

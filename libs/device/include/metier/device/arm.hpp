@@ -161,6 +161,11 @@ private:
 
 /// A robot arm that follows joint set-points: the interface of every arm driver.
 ///
+///     auto source = std::make_shared<MySource>();  // a SetPointSource
+///     if (auto attached = arm.attach(source); !attached) { ... attached.error().message ... }
+///
+/// It may be disconnected at any time, also at first; it connects again by itself, and moves
+/// nothing when it does.
 /// Threading: every function from any thread but the arm's own cycle thread; none waits for the
 /// arm. state() neither locks nor allocates.
 class Arm {

@@ -22,8 +22,11 @@ struct OpenDevice {
     std::shared_ptr<void> owner;  // shared by the users of several interfaces of one device
     /// Interfaces of the device; an arm may have all of them.
     device::Arm* arm = nullptr;
+    /// Planner of the arm's controller, for moves that it can run by itself.
     device::MotionPlanner* planner = nullptr;
+    /// Gripper, also one at an arm's flange.
     device::Gripper* gripper = nullptr;
+    /// Sensor of the wrench, also one that the arm's controller estimates.
     device::ForceTorqueSensor* force_torque_sensor = nullptr;
     /// Robot as its controller describes it (calibration, limits); empty if it does not.
     std::optional<motion::RobotModel> model{};

@@ -60,7 +60,9 @@ struct GripperOutcome {
     bool part_held = false;
 };
 
-/// A gripper with jaws: the interface of every gripper driver.
+/// A gripper with jaws: the interface of every gripper driver:
+///
+///     auto asked = gripper.grasp({.force = 20.0}, [](Result<GripperOutcome> outcome) { ... });
 ///
 /// It makes one motion at a time. `done` is called exactly once for each accepted motion, on the
 /// gripper's notifying thread; it may lock but should not wait. Errors of `done`: device_fault (no
@@ -73,6 +75,7 @@ public:
     /// Callback for the end of a motion; the motion is over when it is called, so it may begin the
     /// next.
     using Done = std::function<void(Result<GripperOutcome>)>;
+    /// Callback for a change of the safety state; may lock, should not wait.
     using SafetyCallback = std::function<void(const Safety&)>;
 
     virtual ~Gripper() = default;

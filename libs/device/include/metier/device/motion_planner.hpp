@@ -35,6 +35,7 @@ struct ControllerPlannedMotion {
         line    ///< the flange along a straight line, to target_flange
     };
 
+    /// Shape of the path, which decides about the kind of target.
     Path path = Path::joint;
     /// Target of a motion to a joint position [rad], axis 1 first; not used with target_flange.
     JointArray target_joints;
@@ -62,6 +63,7 @@ struct MotionOutcome {
         stopped,    ///< by stopMotion(), on the path
         force       ///< by ForceCondition, on the path
     };
+    /// Way in which the motion ended.
     End end = End::at_target;
     /// Force at the flange when it ended, in the flange frame [N].
     std::array<double, 3> force{};

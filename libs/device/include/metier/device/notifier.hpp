@@ -9,7 +9,10 @@
 namespace metier::device {
 
 /// A thread that calls `handler` soon after each signal(): it does for a cycle thread what that
-/// must not do itself, such as locking.
+/// must not do itself, such as locking:
+///
+///     Notifier notifier([&core] { core.dispatch(); });
+///     if (core.toTell()) { notifier.signal(); }  // cycle thread
 ///
 /// Signals that come while the handler runs are handled together by one further call.
 /// Threading: signal() from any thread; one thread creates and destroys it, never the handler.

@@ -13,6 +13,11 @@ namespace metier::device {
 /// Threading: one writer thread, which never waits, so a cycle thread may write. A reader that
 /// meets a write reads again until it has a whole value. No call locks or allocates.
 template <typename T>
+/// Hands the newest value from one thread to any number of readers, such as an arm's state from its
+/// cycle thread. For one reader only, LatestValue needs no second attempt.
+///
+/// Threading: one writer thread, which never waits, so a cycle thread may write. A reader that
+/// meets a write reads again until it has a whole value. No call locks or allocates.
 class SharedValue {
     static_assert(std::is_trivially_copyable_v<T>, "copied between threads word by word");
 

@@ -14,16 +14,17 @@ namespace metier::device {
 
 /// Stops devices while the thread that commands them does not work.
 ///
-/// The watched thread calls tick() to show that it works. If the next tick is later than the limit,
-/// the watchdog stops the devices, again and again until a tick comes. Once the watched thread
-/// works again, `tell` gets the length of the stall; also when the whole process, with the watchdog
-/// in it, was stopped. Nothing is watched before the first tick, however long a start takes.
+/// The watched thread calls tick() to show that it works, every tickPeriod(). If the next tick is
+/// later than the limit, the watchdog stops the devices, again and again until a tick comes. Once
+/// the watched thread works again, `tell` gets the length of the stall; also when the whole
+/// process, with the watchdog in it, was stopped. Nothing is watched before the first tick, however
+/// long a start takes.
 ///
 /// A process of an ordinary operating system cannot promise its own reactions: this is no safety
-/// function.
+/// function. robot_skills::StallWatch ticks it from a server's thread.
 ///
 /// Threading: tick() from the watched thread alone; end() and the destructor wait for the
-///            watchdog's own thread, so no action may call them.
+/// watchdog's own thread, so no action may call them.
 class Watchdog {
 public:
     /// Functions that the watchdog calls. None may wait for the watched thread; all must stay valid

@@ -32,6 +32,7 @@ struct JointDescription {
     /// Turning axis in the joint frame; a unit vector. A positive position turns right-handed about
     /// it.
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+    /// Limits of the axis.
     JointLimits limits;
 };
 

@@ -45,7 +45,9 @@ struct ForceExcess {
 Error toError(const ForceExcess& excess);
 
 /// Watches the wrench of a force-limited motion. The caller acts on an excess: it calls
-/// MotionRun::halt() in the same cycle.
+/// MotionRun::halt() in the same cycle:
+///
+///     if (auto excess = limit.check(wrench)) { run.halt(); }  // once per cycle
 ///
 /// The wrench passes a first-order low-pass of 20 Hz that starts at the first value: a steady
 /// wrench below a limit is never an excess, one above it becomes an excess within a few cycles. A

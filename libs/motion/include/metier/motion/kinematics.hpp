@@ -115,7 +115,11 @@ struct ZeroPosition {
     double slack = 0;
 };
 
-/// Forward and inverse kinematics of one chain.
+/// Forward and inverse kinematics of one chain:
+///
+///     const auto& kinematics = model.kinematics();
+///     const Pose base_from_flange = kinematics.forward(q);
+///     auto back = kinematics.inverse(base_from_flange, {.reference = q});  // q, or why not
 ///
 /// Threading: immutable, any thread. Nothing allocates but the text of an error. The same input
 /// gives the same bits: searches are bounded by a number of iterations, never by time.

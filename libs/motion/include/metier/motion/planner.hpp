@@ -125,6 +125,7 @@ enum class RefusalReason {
 };
 /// The enumerator's name, for logs and results.
 /// Kind of the refusal.
+/// Kind of the refusal.
 std::string_view toString(RefusalReason reason) noexcept;
 
 /// A refused motion; `error.message` has value, limit and unit.
@@ -158,6 +159,7 @@ struct PlannerOptions {
     /// A place is singular if the Jacobian's smallest singular value, position [m] and rotation
     /// [rad] taken together, is below this; 0: no place is singular.
     double smallest_singular_value = 0.01;
+    /// Rule for the places that count as singular.
     SingularPlaces singular_places = SingularPlaces::passed_where_axes_follow;
 };
 

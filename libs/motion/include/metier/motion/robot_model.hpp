@@ -62,7 +62,10 @@ struct RobotAppearance {
 };
 
 /// Everything known about a kind of robot: kinematics, limits, tool frames, shape, names. Read from
-/// a file of models/, or made of what a server publishes.
+/// a file of models/, or made of what a server publishes:
+///
+///     auto model = RobotModel::load("models/ur5.toml");
+///     const Planner planner(*model);
 ///
 /// Threading: immutable, any thread; references are valid as long as the model.
 class RobotModel {

@@ -51,6 +51,7 @@ struct StreamRefusal {
         not_later,       ///< its time is not after that of the set-point before
         timed_out        ///< the stream is over: silent for StreamOptions::stale_cycles, or stop()
     };
+    /// Kind of the refusal, which decides what value and limit are.
     Reason reason = Reason::wrong_size;
     /// Axis that is refused, from 0; for not_finite, position_limit and jump.
     std::size_t axis = 0;

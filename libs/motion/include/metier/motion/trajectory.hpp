@@ -33,11 +33,12 @@ struct PathDeviation {
     double fraction = 0;
 };
 
-/// A planned motion from rest to rest: a path and the time along it.
+/// A planned motion from rest to rest: a path and the time along it. Made by a Planner, run by a
+/// MotionRun.
 ///
 /// Threading: immutable, any thread. A copy shares the plan (several threads may hold it: planner,
-/// cycle, recorder); drop the last one outside the cycle thread, since that frees memory.
-/// Sampling does not allocate, lock or throw, and gives the same bits for the same time.
+/// cycle, recorder); drop the last one outside the cycle thread, since that frees memory. Sampling
+/// does not allocate, lock or throw, and gives the same bits for the same time.
 class Trajectory {
 public:
     /// Content of a plan, known to this library only.

@@ -27,6 +27,8 @@ namespace metier::skill {
 /// session whose lease ran out is refused everything but Halt until it takes a lease or the lock
 /// anew: commands that it sent before it noticed, or that the network delivers late, move nothing.
 ///
+/// Give the same Control to the ProgramOptions of all skills of the controller; they listen by
+/// themselves. In a server SkillServer::serveControl() connects it to the nodes.
 /// Threading: the owner's thread, which all its Programs share.
 class Control {
 public:

@@ -15,7 +15,14 @@ namespace metier::skill {
 struct ExecutionCore;
 
 /// Handle by which the work of an execution reports its outcome and its progress to the Program
-/// that runs it.
+/// that runs it:
+///
+///     void start(ExecutionHandle execution) override {
+///         device_.measure([execution](Result<double> value) {  // on any thread
+///             value ? execution.finish({{"Weight", *value}})
+///                   : execution.fail(Reason::error, value.error().message);
+///         });
+///     }
 ///
 /// All copies report to the same Program. Calls that come late, twice, or after the Program is gone
 /// change nothing. An empty handle ignores every call.

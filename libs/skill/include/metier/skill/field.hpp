@@ -32,6 +32,7 @@ struct Unit {
 
 /// A number without unit; the default of a field.
 inline constexpr Unit kOne{"", "one", "C62"};
+// Units of fields; all values are in SI units and radians, never in millimetres or degrees.
 inline constexpr Unit kMetre{"m", "metre", "MTR"};
 inline constexpr Unit kRadian{"rad", "radian", "C81"};
 inline constexpr Unit kSecond{"s", "second", "SEC"};

@@ -34,6 +34,14 @@ struct StripOptional<std::optional<T>> {
 /// A member is one of Value's types, or std::optional of one for a field that may stay Null.
 /// Threading: read-only use from any thread.
 template <typename T>
+/// Declares the parameters or results of a skill once, as members of a plain struct:
+///
+///     const auto fields = FieldList<Grasp>().add(
+///         &Grasp::force, {.name = "Force", .unit = kNewton, .default_value = 20.0});
+///     Result<Grasp> grasp = fields.read({{"Force", 30.0}});
+///
+/// A member is one of Value's types, or std::optional of one for a field that may stay Null.
+/// Threading: read-only use from any thread.
 class FieldList {
 public:
     /// Declares the next field; its type follows from the member.

@@ -63,7 +63,11 @@ struct StartRequest {
     ParentExecution parent{};
 };
 
-/// The state machine of one skill (OPC 10000-10). Nothing else changes the state.
+/// The state machine of one skill (OPC 10000-10). Nothing else changes the state:
+///
+///     Program program({}, std::make_unique<WaveSkill>(), executor, clock);
+///     program.attach(observer);
+///     auto id = program.startWith(caller, {.parameters = {{"Height", 0.3}}});
 ///
 /// It begins Ready. Halted and Suspended mean that the device stands still: Halt and Suspend of a
 /// running work return at once, and the transition follows when the work is at rest. What an

@@ -21,6 +21,7 @@ struct TransitionEvent {
     TransitionNumber number = TransitionNumber::halted_to_ready;
     /// State before and state after it.
     State from = State::halted;
+    /// State after it.
     State to = State::ready;
     /// Server's wall clock when the state changed.
     UtcTime time{};
@@ -69,6 +70,7 @@ struct Diagnostic {
     std::string last_method_call{};
     /// Session and application name of its caller.
     std::string last_method_session_id{};
+    /// Application name of its client.
     std::string last_method_client_name{};
     /// For Start, the parameters that its client had written; for StartWith, those that it was
     /// given.

@@ -12,6 +12,7 @@
 
 namespace metier::skill {
 
+// The structured values, from metier/base/quantities.hpp.
 using metier::Frame;
 using metier::Range;
 using metier::Vector3;
