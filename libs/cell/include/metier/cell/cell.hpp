@@ -165,6 +165,7 @@ struct ServerConfig {
     double stall_limit = 0.25;
     /// Limits for its clients that differ from the defaults of opcua::ServerLimits.
     std::vector<Limit> limits;
+    /// Ways in which it is found, and finds others.
     Discovery discovery;
     /// Place of its records, the same for all servers of a cell.
     Records records;
@@ -209,7 +210,10 @@ struct VirtualController {
 };
 
 /// A cell: processes that work together, described by a TOML file (docs/guide/cell.md). Pointers
-/// that it returns are valid as long as it is neither changed nor destroyed.
+/// that it returns are valid as long as it is neither changed nor destroyed:
+///
+///     auto cell = loadCell("cell.toml");
+///     if (const auto* arm = cell->find("arm")) { start(cell->resolved(*arm)); }
 struct CellConfig {
     /// Name of the cell, for people.
     std::string name;

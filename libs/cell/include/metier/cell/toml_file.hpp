@@ -114,7 +114,13 @@ private:
     const Impl* impl_;  // owned by the file
 };
 
-/// A TOML file that is read table by table.
+/// A TOML file that is read table by table. It owns what its tables and values refer to:
+///
+///     auto file = TomlFile::load("part.toml");
+///     const double width = file->root().number("width");
+///     METIER_TRY(file->finish());  // all errors together
+///
+/// Threading: one thread.
 class TomlFile {
 public:
     /// Reads and parses a file; waits for the disk.

@@ -15,7 +15,11 @@
 namespace metier::client {
 
 /// One skill of a server, for an owner that must not wait: requests are sent without waiting, and
-/// the client's thread calls back with their outcomes.
+/// the client's thread calls back with their outcomes. A program that may wait is simpler with
+/// SkillHandle:
+///
+///     auto skill = AsyncSkill::open(client, address, {.on_transition = noteTransition});
+///     skill->startWith({.parameters = values}, [](opcua::Answer<std::string> id) { ... });
 ///
 /// Only open(), now() and the destructor wait. Each `done` is called once, at the latest at the
 /// client's time-out, even after this object has ended; it is not called if the request itself

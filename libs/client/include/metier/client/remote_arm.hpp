@@ -22,7 +22,10 @@ struct RemoteArmOptions {
 };
 
 /// An arm of another OPC UA server. Its set-points are written to the position stream of that
-/// server, one per cycle of the arm, each with the time for which it is meant.
+/// server, one per cycle of the arm, each with the time for which it is meant:
+///
+///     auto arm = RemoteArm::connect({.url = "opc.tcp://127.0.0.1:4841"});
+///     (*arm)->attach(source);  // as with any device::Arm
 ///
 /// Each motion is a stream of its own. The motion's end is reported when the stream has ended, so
 /// that the arm is free for other skills of its server. A server whose stream does not know

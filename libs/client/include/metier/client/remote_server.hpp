@@ -50,7 +50,10 @@ struct PendingUse {
 };
 
 /// Another server whose skills a component uses. After a loss of the connection it connects again
-/// by itself.
+/// by itself:
+///
+///     auto server = RemoteServer::connect({.url = "opc.tcp://127.0.0.1:4842"}, executor);
+///     auto grasp = (*server)->use(address, "pick.PickPlaceSkill");
 ///
 /// An execution under way when the connection is lost counts as lost for its user. If it still runs
 /// when the connection is back, or when the component was restarted, it is halted, since nothing
@@ -91,6 +94,8 @@ public:
     /// use() in two parts, for an executor that is at work: open() waits, on any thread but the
     /// executor's; usedSkill() does not wait and must be called on the executor's thread.
     Result<PendingUse> open(const client::SkillAddress& skill, std::string origin);
+    /// Second part: makes the used skill; it must end before this. Executor's thread; does not
+    /// wait.
     std::unique_ptr<composition::UsedSkill> usedSkill(PendingUse use);
 
 private:

@@ -215,8 +215,11 @@ struct Definition {
 /// are kExecutionSteps, the paths of the finished steps in order, and kExecutionDurations, the time
 /// that each took [s]; of the first kMostReportedSteps.
 inline constexpr std::string_view kExecution = "execution";
+/// Name of the paths of the finished steps.
 inline constexpr std::string_view kExecutionSteps = "Steps";
+/// Name of the times of these steps [s].
 inline constexpr std::string_view kExecutionDurations = "Durations";
+/// Largest number of steps in these lists; later ones are left out.
 inline constexpr std::size_t kMostReportedSteps = 1'000;
 
 /// Longest text of attempt and step for which an execution id has room.

@@ -27,9 +27,14 @@ struct BoundSkill final : UsedSkillListener {
     void onReset(const Result<void>& outcome) override { halted_by_us = halted_by_us && !outcome; }
 };
 
+/// Used skills by their aliases.
 using BoundSkills = std::map<std::string, BoundSkill, std::less<>>;
 
-/// A skill that runs other skills, as a file says.
+/// A skill that runs other skills, as a file says:
+///
+///     auto composition = compose(*loadDefinition("pick.toml"), descriptions);
+///     auto skill = std::make_unique<SequenceSkill>(*composition, std::move(used_skills), executor,
+///                                                  clock, "pick.PickPlaceSkill~3f09a2");
 ///
 /// Each execution of a used skill gets the id "ORIGIN/EXECUTION/STEP/COUNT". Suspend, Resume and
 /// Halt reach every skill that runs; the whole is at rest once all these are. After a failure none

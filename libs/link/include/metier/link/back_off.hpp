@@ -8,7 +8,11 @@ namespace metier::link {
 /// Waits for `time`; returns early when a stop is requested. Threads: any.
 void waitFor(const std::stop_token& stop, std::chrono::nanoseconds time);
 
-/// Pauses between attempts to connect: 0.2 s first, then doubled each time, up to 2 s.
+/// Pauses between attempts to connect: 0.2 s first, then doubled each time, up to 2 s:
+///
+///     while (!stop.stop_requested()) {
+///         connect() ? pauses.reset() : pauses.wait(stop);
+///     }
 ///
 /// Threading: one thread; the stop may be requested by any.
 class BackOff {

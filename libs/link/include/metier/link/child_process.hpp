@@ -34,6 +34,9 @@ struct ChildOptions {
 /// A program that runs as a child process and does not outlive its owner: the destructor ends it,
 /// and the kernel signals it when the owner dies, even by kill -9.
 ///
+///     auto server = ChildProcess::start({"metier", "serve", "cell.toml"});
+///     auto ready = server->readLine(deadline);
+///
 /// Threading: one thread, which must live as long as the child: the kernel takes the thread that
 /// started the child for its owner.
 class ChildProcess {

@@ -13,7 +13,11 @@ namespace metier::link {
 
 /// Closes a TCP connection when its process exists but does not work: the process was stopped
 /// (SIGSTOP), or the thread of the connection is stuck. Made for controllers that stop their device
-/// when a connection ends, but wait for ever on a silent one.
+/// when a connection ends, but wait for ever on a silent one:
+///
+///     auto guard = LinkGuard::start(std::chrono::milliseconds(100));
+///     guard->guard(link);
+///     guard->alive();  // in every cycle
 ///
 /// The guard is a small process of its own that holds a copy of the connection and opens nothing
 /// else. It ends with its owner. It does not notice when the whole computer stood still.

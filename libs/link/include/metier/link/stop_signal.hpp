@@ -8,6 +8,10 @@ namespace metier::link {
 /// signals are blocked in this thread and in every thread that starts after it. A SIGHUP that is
 /// ignored, as under nohup, stays ignored.
 ///
+///     const StopSignal stop;  // first in main()
+///     const auto server = ...;
+///     stop.wait();
+///
 /// Create it first in a command, before any thread. Threading: one thread.
 class StopSignal {
 public:

@@ -15,8 +15,12 @@ namespace metier::link {
 
 /// A TCP connection on which every wait has a deadline. Small writes leave at once (TCP_NODELAY).
 ///
+///     auto link = TcpLink::connect("10.0.0.5", 30004, deadline);
+///     METIER_TRY(link->send(request, deadline));
+///     METIER_TRY(link->receiveAll(header, deadline));
+///
 /// Error texts begin with the peer, such as "10.0.0.5:30004: ...". Sending and receiving do not
-/// allocate unless there is an error.
+/// allocate unless there is an error. The connection ends with this object.
 /// Threading: one thread sends and receives; shutdown() from any.
 class TcpLink {
 public:
@@ -59,7 +63,7 @@ private:
     std::string peer_;
 };
 
-/// A TCP port that waits for peers to connect.
+/// A TCP port that waits for peers to connect. It ends with this object; accepted links stay.
 ///
 /// Threading: one thread; shutdown() from any.
 class TcpListener {

@@ -5,7 +5,7 @@
 namespace metier::link {
 
 /// Event by which any thread ends the wait of another one. A ring() before the wait is not lost;
-/// several of them count as one.
+/// several of them count as one. Each wait takes what was rung before.
 ///
 /// Threading: ring() on any thread; wait() and waitUntil() on one.
 class WakeEvent {

@@ -7,6 +7,7 @@
 
 namespace metier::path_evaluation {
 
+/// Number of corners; a lap ends at the first one.
 inline constexpr std::size_t kCorners = 4;
 
 /// A square that stands upright in the robot's base frame; the tool keeps its orientation on it.

@@ -51,7 +51,11 @@ struct WriteReport {
     Dropped dropped{};
 };
 
-/// Records the executions of one server. Every call returns at once, whatever the disk does.
+/// Records the executions of one server. Every call returns at once, whatever the disk does. A
+/// server gives each Program a ProgramRecorder, which makes these calls:
+///
+///     auto recorder = Recorder::create({.url = "/var/lib/metier/records.db", .server = uri});
+///     ProgramRecorder of_skill(program, **recorder, nullptr, {.server_name = "arm"});
 ///
 /// A thread of its own writes rows, at least every 500 ms: a crash of the server loses at most the
 /// last second. While the store cannot be opened or written, or is too slow, records wait in a

@@ -76,12 +76,15 @@ struct Retention {
 bool hasPassword(std::string_view url);
 
 /// Executions that servers have recorded, in a SQLite file or a PostgreSQL database with the same
-/// schema (docs/guide/history.md).
+/// schema (docs/guide/history.md):
+///
+///     auto store = Store::open("/var/lib/metier/records.db");
+///     auto page = (*store)->list({.state = "Halted"}, {.count = 20});
 ///
 /// Threading: one thread at a time; each thread opens its own. Calls wait for the disk or the
 /// database: do not call them on a server's or a cycle thread.
 /// Errors of every call: resource_unavailable (disk, lock), connection_lost (PostgreSQL),
-///                       invalid_argument (damaged).
+/// invalid_argument (damaged).
 class Store {
 public:
     enum class Access {
@@ -105,7 +108,8 @@ public:
     /// \param number_or_id a number, or else an id; the newest execution with that id is returned
     /// Errors: not_found.
     Result<ExecutionRow> find(std::string_view number_or_id);
-    /// Lists executions, newest first. An unknown Page::before gives an empty list.
+    /// Lists executions, newest first. An unknown Page::before gives an empty list. For the next
+    /// page, give the number of the last execution as Page::before.
     Result<Listing> list(const Filter& filter, const Page& page);
     /// Executions that this execution started, on any server, oldest first.
     /// \param number ExecutionRow::number, as in the functions below

@@ -43,6 +43,9 @@ enum class WriteState {
 /// SHA-256. Beyond `part_size` the log and its chain go on in a further file: "a.log", "a.2.log",
 /// "a.3.log", ... No part is ever removed.
 ///
+///     auto log = AuditLog::open({.file = "audit.log"});
+///     (*log)->append({now, "Start", {{"user", "anna"}, {"skill", "JointPtpMoveSkill"}}});
+///
 /// A changed, removed or inserted line breaks the chain, which verify() reports. Lines cut off at
 /// the end are noticed only with a chain value that was kept elsewhere, see anchor(). An entry is
 /// in the file a second after append() at most; a slow or full disk delays only the log's own

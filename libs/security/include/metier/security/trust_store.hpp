@@ -45,6 +45,9 @@ struct CertificateRefusal {
 /// 7.8.2.8): trusted/certs, trusted/crl, issuers/certs, issuers/crl, and rejected for certificates
 /// that a person has to decide on.
 ///
+///     auto store = TrustStore::open(folder.trustFolder());
+///     if (auto peer = store->check(der, now); !peer) { ... peer.error().message ... }
+///
 /// A certificate is trusted if it is in trusted/certs itself, or was signed by an authority in
 /// trusted/certs whose chain up to its root and whose revocation lists are known. Changes in the
 /// folders (files added, renamed or removed) take effect at the next connection.

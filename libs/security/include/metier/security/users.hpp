@@ -40,7 +40,11 @@ struct User {
 /// Users of a server, kept in a file that only its owner may read: one line for each user, with
 /// name, role and password hash.
 ///
-/// Threading: one thread.
+///     auto users = UserTable::load(file);
+///     METIER_TRY(users->add("anna", Role::operator_, password));
+///     METIER_TRY(users->save(file));
+///
+/// Threading: one thread. A running server reads the file again by itself, see LoginGuard.
 class UserTable {
 public:
     /// A table without users.

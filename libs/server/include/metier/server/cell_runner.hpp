@@ -56,7 +56,10 @@ enum class OnFailure {
     end_cell,
 };
 
-/// The servers and virtual controllers of a cell as child processes of this one.
+/// The servers and virtual controllers of a cell as child processes of this one:
+///
+///     auto cell = CellRunner::start(config, commands, stop.descriptor(), printReady);
+///     cell->lookAfter(stop.descriptor(), OnFailure::restart, print);
 ///
 /// Threading: one thread, which lives as long as this.
 class CellRunner {

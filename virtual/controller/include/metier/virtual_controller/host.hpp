@@ -35,6 +35,10 @@ struct HostOptions {
 /// One virtual controller with its control port, which takes injections and shows the state: each
 /// line of JSON is answered by a line of JSON, see controlAnswer().
 ///
+///     auto host = Host::start({.name = "ur5", .type = "ur", .address = "127.0.1.1"},
+///                             controllerTypes());
+///     (*host)->run();  // until stop()
+///
 /// Threading: one thread makes, runs and destroys it; stop() from any.
 class Host {
 public:

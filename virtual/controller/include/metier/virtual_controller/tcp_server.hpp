@@ -42,7 +42,10 @@ public:
 /// Errors: invalid_argument (not an address).
 Result<asio::ip::address> parseAddress(const std::string& text);
 
-/// A TCP port of a virtual controller.
+/// A TCP port of a virtual controller:
+///
+///     auto port = TcpServer::listen(context, "127.0.1.1", 30004, faults,
+///                                   {.on_data = [&](TcpPeer& peer, auto bytes) { ... }});
 ///
 /// Threading: made, used and destroyed on the thread that runs the io_context, whose handlers are
 /// all called there.

@@ -95,6 +95,7 @@ struct Popup {
     enum class Level { message, warning, error };
     /// Text and heading.
     std::string text;
+    /// Heading of the message.
     std::string title;
     /// Kind of the message.
     Level level = Level::message;

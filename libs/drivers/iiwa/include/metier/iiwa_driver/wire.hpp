@@ -63,6 +63,7 @@ struct Command {
 /// The bytes of a whole command.
 class CommandBytes {
 public:
+    /// Length of the longest command [byte]: eight numbers of 8 byte.
     static constexpr std::size_t kLongest = 64;
 
     std::span<const std::byte> bytes() const noexcept { return {bytes_.data(), size_}; }
@@ -82,6 +83,7 @@ CommandBytes encode(const Command& command, Precision precision) noexcept;
 constexpr std::size_t stateSize(Precision precision) noexcept {
     return precision == Precision::float32 ? 38 * 4 : 38 * 8;
 }
+/// Length of the longest state [byte], for a buffer.
 inline constexpr std::size_t kLongestState = stateSize(Precision::float64);
 
 /// The cabinet's answer to every command, in SI units. Trivially copyable.
