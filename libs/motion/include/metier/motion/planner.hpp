@@ -170,8 +170,8 @@ struct PlannerOptions {
 ///     auto plan = planner.ptp({.start = q, .target = base_from_tool, .tool_frame = "tool"});
 ///     if (!plan) { ... plan.error().error.message ... }
 ///
-/// Threading: any thread; pure; allocates. A plan takes milliseconds: not for a cycle thread. The
-/// model must outlive the planner; trajectories do not need it.
+/// Threading: any thread; pure; allocates. Not for a cycle thread. The model must outlive
+/// the planner; trajectories do not need it.
 class Planner {
 public:
     /// \param options for paths of the tool frame; a PTP does not use them

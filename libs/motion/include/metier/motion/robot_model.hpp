@@ -17,7 +17,8 @@ class TomlFile;
 
 namespace metier::motion {
 
-/// A cylinder with round ends around a link, for self-collision. Neighbouring links may overlap.
+/// A cylinder with round ends around a link, for self-collision. Links whose numbers differ by less
+/// than 3 may overlap: they are not compared. Only the first 32 of a model count.
 struct Capsule {
     /// Link number: 0 is the base; i is the link behind axis i, which that axis moves.
     std::size_t link = 0;

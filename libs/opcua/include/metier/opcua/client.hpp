@@ -257,7 +257,7 @@ private:
 /// state() and the destructor of a Subscription; waiting calls and close() are refused there.
 class Client {
 public:
-    /// Connects and activates a session; waits, at most ClientOptions::connect_timeout.
+    /// Connects and activates a session; waits, at most about ClientOptions::connect_timeout.
     /// \param url "opc.tcp://host:port"
     /// Errors: invalid_argument (the URL, a time that is not positive), connection_lost (no server
     ///         there), access_denied (user or password), timeout.

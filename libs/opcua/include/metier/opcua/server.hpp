@@ -180,8 +180,7 @@ using ResultOf = typename AsResult<std::invoke_result_t<Work&>>::Type;
 /// which thread may call it.
 class Server {
 public:
-    /// Makes the server and loads its NodeSets; nothing is open yet. Takes some 100 ms with the
-    /// skill model.
+    /// Makes the server and loads its NodeSets; nothing is open yet.
     /// Errors: invalid_argument (an address that is not loopback, a limit of zero, a certificate
     ///         for another ApplicationUri), resource_unavailable (the trust folder), not_found
     ///         (NodeSet), internal (the stack).

@@ -23,7 +23,7 @@ struct Context {
 };
 
 /// A server of a cell: an OPC UA server with skills and all its services. Its destructor brakes the
-/// device and ends the server, which takes some seconds at most.
+/// device and ends the server; it waits for both.
 ///
 ///     link::StopSignal stop;
 ///     auto identity = identityOf(config, security);
