@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LEAST = 0.37
+LEAST = 0.47
 LIBRARY = re.compile(r"((?:libs/drivers|libs|virtual)/[^/]+)/include/.+\.hpp")
 
 
