@@ -17,11 +17,11 @@ constexpr std::string_view kEnd = "\"}";
 constexpr std::size_t kLongestValue = 1'000;
 
 std::string timeText(UtcTime time) {
-    using std::chrono::system_clock;
-    const auto milliseconds =
-        std::chrono::floor<std::chrono::milliseconds>(time.time_since_epoch()).count();
-    const auto rest = ((milliseconds % 1000) + 1000) % 1000;
-    return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(system_clock::to_time_t(time)), rest);
+    using std::chrono::floor;
+    const auto whole = floor<std::chrono::seconds>(time);
+    const auto rest = floor<std::chrono::milliseconds>(time - whole).count();
+    return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(whole)),
+                       rest);
 }
 
 /// Chain value of a line without its chain, which begins behind a comma.

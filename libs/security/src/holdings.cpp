@@ -12,6 +12,18 @@ constexpr std::size_t kMostFiles = 1'000;
 constexpr auto kTick = std::chrono::seconds(1);
 constexpr std::array kFolders{kTrusted, kTrustedLists, kIssuers, kIssuersLists};
 
+std::vector<fs::path> allFilesIn(const fs::path& folder) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        if (entry->is_regular_file(error)) {
+            files.push_back(entry->path());
+        }
+    }
+    return files;
+}
+
 std::vector<CrlPtr> listsIn(const fs::path& folder) {
     std::vector<CrlPtr> lists;
     for (const auto& file : filesIn(folder)) {
@@ -35,22 +47,16 @@ std::array<fs::file_time_type, 4> changesOf(const fs::path& folder) {
 }  // namespace
 
 std::vector<fs::path> filesIn(const fs::path& folder) {
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-        if (entry->is_regular_file(error) && files.size() < kMostFiles) {
-            files.push_back(entry->path());
-        }
-    }
+    auto files = allFilesIn(folder);
     std::sort(files.begin(), files.end());
+    files.resize(std::min(files.size(), kMostFiles));
     return files;
 }
 
 void makeRoom(const fs::path& folder, std::size_t most) {
     std::vector<std::pair<fs::file_time_type, fs::path>> all;
     std::error_code gone;
-    for (const auto& file : filesIn(folder)) {
+    for (const auto& file : allFilesIn(folder)) {
         all.emplace_back(fs::last_write_time(file, gone), file);
     }
     std::sort(all.begin(), all.end());

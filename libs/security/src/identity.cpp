@@ -1,5 +1,6 @@
 #include "metier/security/identity.hpp"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 #include <openssl/err.h>
 #include <openssl/pem.h>
@@ -19,6 +20,8 @@ namespace {
 constexpr int kLeastBits = 2048;
 constexpr int kMostBits = 4096;
 constexpr int kSerialBytes = 16;
+constexpr std::size_t kLongestName = 64;  // of a CommonName (RFC 5280, appendix A.1)
+constexpr std::chrono::days kLongestLifetime{36'525};
 constexpr auto kClockDifference = std::chrono::hours(1);
 constexpr const char* kIdentityFile = "identity.pem";
 constexpr const char* kCertificateFile = "certificate.der";
@@ -33,6 +36,12 @@ bool isAddress(const std::string& host) {
     return !host.empty() && host.find_first_not_of("0123456789.") == std::string::npos;
 }
 
+/// A name of digits and points that is no address cannot be in a certificate.
+bool isWrongAddress(const std::string& host) {
+    in_addr address{};
+    return isAddress(host) && ::inet_pton(AF_INET, host.c_str(), &address) != 1;
+}
+
 /// Alternative names in the configuration language of OpenSSL; characters that could end an element
 /// are refused.
 Result<std::string> alternativeNames(const IdentityOptions& options) {
@@ -44,7 +53,8 @@ Result<std::string> alternativeNames(const IdentityOptions& options) {
     const bool all_plain =
         std::all_of(options.application_uri.begin(), options.application_uri.end(), plain) &&
         std::all_of(options.hosts.begin(), options.hosts.end(), [&](const std::string& host) {
-            return !host.empty() && std::all_of(host.begin(), host.end(), plain);
+            return !host.empty() && !isWrongAddress(host) &&
+                   std::all_of(host.begin(), host.end(), plain);
         });
     if (options.application_uri.empty() || !all_plain) {
         return fail(Errc::invalid_argument,
@@ -123,6 +133,28 @@ struct Strength {
     int key_bits;
 };
 
+Result<void> checkLifetime(std::chrono::days lifetime) {
+    return lifetime.count() > 0 && lifetime <= kLongestLifetime
+               ? Result<void>()
+               : fail(Errc::invalid_argument,
+                      fmt::format("a lifetime of {} days is not within 1 to {}", lifetime.count(),
+                                  kLongestLifetime.count()));
+}
+
+Result<void> checkOptions(const IdentityOptions& options) {
+    if (options.key_bits < kLeastBits || options.key_bits > kMostBits) {
+        return fail(Errc::invalid_argument, fmt::format("a key of {} bit is not within {} to {}",
+                                                        options.key_bits, kLeastBits, kMostBits));
+    }
+    const auto& name = options.application_name;
+    if (name.empty() || name.size() > kLongestName || name.find('\0') != std::string::npos) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("an application's name has 1 to {} bytes, not {}", kLongestName,
+                                name.size()));
+    }
+    return checkLifetime(options.lifetime);
+}
+
 /// \param name sets subject, issuer and SubjectAltName
 Result<Identity> makeFor(const std::function<bool(X509*)>& name, const Strength& strength,
                          UtcTime now) {
@@ -146,10 +178,7 @@ Result<Identity> makeFor(const std::function<bool(X509*)>& name, const Strength&
 }  // namespace
 
 Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now) {
-    if (options.key_bits < kLeastBits || options.key_bits > kMostBits) {
-        return fail(Errc::invalid_argument, fmt::format("a key of {} bit is not within {} to {}",
-                                                        options.key_bits, kLeastBits, kMostBits));
-    }
+    METIER_TRY(checkOptions(options));
     METIER_ASSIGN(const auto names, alternativeNames(options));
     return makeFor(
         [&](X509* certificate) {
@@ -160,6 +189,7 @@ Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now) {
 }
 
 Result<Identity> makeSuccessor(const Identity& former, std::chrono::days lifetime, UtcTime now) {
+    METIER_TRY(checkLifetime(lifetime));
     const auto parsed = parseDer(former.certificate.der());
     if (!parsed) {
         return libraryFailed("read a certificate");

@@ -12,8 +12,6 @@
 namespace metier::security {
 namespace {
 
-constexpr std::size_t kLargestFile = 64U * 1024U;
-
 const unsigned char* bytesOf(std::string_view text) noexcept {
     return reinterpret_cast<const unsigned char*>(
         text.data());  // NOLINT(*-reinterpret-cast): C API

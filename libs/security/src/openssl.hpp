@@ -39,7 +39,8 @@ std::string textOf(BIO* bio);
 /// Digest of the text in hexadecimal digits.
 std::string digestOf(std::string_view text, const EVP_MD* kind);
 
-/// The file, up to 64 kB; empty if there is none.
+constexpr std::size_t kLargestFile = 64U * 1024U;
+/// The file, up to kLargestFile; empty if there is none, or a larger one.
 std::string readFile(const std::string& path);
 
 }  // namespace metier::security

@@ -11,6 +11,10 @@
 namespace metier::security {
 namespace {
 
+/// Far above what a log reaches; a greater number is that of another file, such as a copy with the
+/// date in its name.
+constexpr std::uint32_t kMostParts = 999'999;
+
 /// The number in "<stem>.<number><extension>"; 0: it is no such name.
 std::uint32_t numberIn(std::string_view name, std::string_view stem, std::string_view extension) {
     if (name.size() <= stem.size() + extension.size() + 1 || !name.starts_with(stem) ||
@@ -36,8 +40,13 @@ std::uint32_t lastPart(const std::filesystem::path& log) {
     const auto extension = log.extension().string();
     std::uint32_t last = 1;
     std::error_code none;  // no folder, no parts
-    for (const auto& entry : std::filesystem::directory_iterator(log.parent_path(), none)) {
-        last = std::max(last, numberIn(entry.path().filename().string(), stem, extension));
+    const auto folder = log.has_parent_path() ? log.parent_path() : std::filesystem::path(".");
+    for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+        const auto name = entry.path().filename();
+        const auto number = numberIn(name.string(), stem, extension);
+        if (number <= kMostParts && name == partOf(log, number).filename()) {
+            last = std::max(last, number);
+        }
     }
     return last;
 }

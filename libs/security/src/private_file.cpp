@@ -87,7 +87,13 @@ Result<void> writeWhole(const std::filesystem::path& file, std::string_view cont
 
 Result<std::string> readPrivate(const std::filesystem::path& file) {
     METIER_TRY(checkReaders(file));
-    return readFile(file.string());
+    auto text = readFile(file.string());
+    std::error_code error;
+    if (text.empty() && std::filesystem::file_size(file, error) != 0) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{} cannot be read, or is over 64 kB", file.string()));
+    }
+    return text;
 }
 
 }  // namespace metier::security

@@ -46,7 +46,8 @@ Result<void> writeWhole(const std::filesystem::path& file, std::string_view cont
                         Readers readers);
 
 /// The content of a file, up to 64 kB, that its owner alone may read.
-/// Errors: not_found; access_denied (others may read it).
+/// Errors: not_found; access_denied (others may read it); invalid_argument (it cannot be read, or
+///         is larger).
 Result<std::string> readPrivate(const std::filesystem::path& file);
 
 }  // namespace metier::security

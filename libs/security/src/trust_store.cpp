@@ -127,6 +127,10 @@ Result<Certificate> TrustStore::trustRejected(std::string_view name) {
 }
 
 Result<void> TrustStore::addRevocationList(const fs::path& file) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) {
+        return fail(Errc::not_found, fmt::format("no such file: {}", file.string()));
+    }
     const auto text = readFile(file.string());
     const auto list = parseCrlPemOrDer(text);
     if (list == nullptr) {

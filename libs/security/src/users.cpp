@@ -11,6 +11,7 @@
 #include <memory>
 #include <sstream>
 
+#include "openssl.hpp"
 #include "private_file.hpp"
 
 namespace metier::security {
@@ -112,6 +113,10 @@ Result<void> UserTable::save(const std::filesystem::path& file) const {
     std::string text = "# name role password-hash; changed by `metier user`\n";
     for (const auto& user : users_) {
         text += fmt::format("{} {} {}\n", user.name, toString(user.role), user.password_hash);
+    }
+    if (text.size() > kLargestFile) {  // load() would refuse it
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: {} users are over 64 kB", file.string(), users_.size()));
     }
     return writeWhole(file, text, Readers::owner);
 }

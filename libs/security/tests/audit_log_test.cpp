@@ -229,5 +229,45 @@ TEST_F(AuditFile, CountsWhatItCouldNotKeep) {
     EXPECT_THAT(text(), HasSubstr(R"("event":"EntriesLost","count":"100")"));
 }
 
+TEST_F(AuditFile, DoesNotWaitBeyondADeadlineForAFullDisk) {
+    const auto log = open();
+    EXPECT_TRUE(log->flush(SteadyTime())) << "there is nothing to wait for";
+    log->append(entry("Start"));
+    ASSERT_TRUE(log->flush(soon()));
+    const auto anchor = log->anchor();
+    FullDisk disk(static_cast<rlim_t>(std::filesystem::file_size(file_)));
+    log->append(entry("Halt"));
+    EXPECT_FALSE(log->flush(std::chrono::steady_clock::now() + 20ms));
+    EXPECT_EQ(log->waiting(), 1U);
+    EXPECT_EQ(log->anchor(), anchor) << "of what is in the file";
+    disk.end();
+    EXPECT_TRUE(log->flush(soon()));
+    EXPECT_EQ(log->waiting(), 0U);
+    EXPECT_NE(log->anchor(), anchor);
+}
+
+TEST_F(AuditFile, EndsAlsoWhileTheDiskIsFull) {
+    auto log = open();
+    log->append(entry("Start"));
+    ASSERT_TRUE(log->flush(soon()));
+    {
+        const FullDisk disk(static_cast<rlim_t>(std::filesystem::file_size(file_)) + 20);
+        log->append(entry("Halt"));
+        log.reset();
+    }
+    const auto verified = verify(file_);
+    ASSERT_TRUE(verified) << "nothing is left of the line that did not fit";
+    EXPECT_EQ(verified->entries, 1U);
+}
+
+TEST_F(AuditFile, HasNothingAtFirst) {
+    open();
+    const auto verified = verify(file_);
+    ASSERT_TRUE(verified) << verified.error().message;
+    EXPECT_EQ(verified->entries, 0U);
+    EXPECT_EQ(verified->first_time, "");
+    EXPECT_EQ(verified->last_chain, std::string(64, '0'));
+}
+
 }  // namespace
 }  // namespace metier::security

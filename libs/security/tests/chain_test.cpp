@@ -88,5 +88,38 @@ TEST(Chain, HoldsWhateverAPeerIsCalled) {
         << "nobody but the log writes these";
 }
 
+TEST(Chain, HoldsTextsUpToAThousandBytes) {
+    auto entry = entryOf("Login");
+    entry.fields = {{"whole", std::string(1'000, 'x')}, {"cut", std::string(1'001, 'y')}};
+    const auto line = chainLine(entry, 1, kNoChain);
+    EXPECT_THAT(line.text, HasSubstr('"' + std::string(1'000, 'x') + '"'));
+    EXPECT_THAT(line.text, HasSubstr('"' + std::string(1'000, 'y') + "...\""));
+    // The last letter is cut in two: what is left of it is no UTF-8.
+    entry.fields = {{"user", std::string(999, 'z') + "\xc3\xa4"}};
+    const auto cut = chainLine(entry, 1, kNoChain);
+    EXPECT_THAT(cut.text, HasSubstr("z\\ufffd...\""));
+    EXPECT_TRUE(readLine(cut.text, kNoChain));
+}
+
+TEST(Chain, CountsTimeAlsoBefore1970) {
+    auto entry = entryOf("Start");
+    entry.time = UtcTime{} - std::chrono::milliseconds(1);
+    EXPECT_THAT(chainLine(entry, 1, kNoChain).text,
+                HasSubstr(R"("time":"1969-12-31T23:59:59.999Z")"));
+}
+
+TEST(Chain, IsNoneWithoutNumberOrTime) {
+    const auto line = chainLine(entryOf("Start"), 1, kNoChain).text;
+    ASSERT_TRUE(readLastLine(line));
+    for (const auto* number : {"-1", "1.5", "\"1\"", "null"}) {
+        auto other = line;
+        other.replace(other.find(":1,") + 1, 1, number);
+        EXPECT_FALSE(readLastLine(other)) << number;
+    }
+    auto timeless = line;
+    timeless.replace(timeless.find("time"), 4, "date");
+    EXPECT_FALSE(readLastLine(timeless));
+}
+
 }  // namespace
 }  // namespace metier::security

@@ -88,5 +88,57 @@ TEST(Identity, IsRefusedWithAWeakKeyOrNamesThatSayMore) {
     EXPECT_FALSE(makeIdentity({.hosts = {""}}, now));
 }
 
+TEST(Identity, IsRefusedWithoutANameThatFits) {
+    const auto now = std::chrono::system_clock::now();
+    EXPECT_EQ(makeIdentity({.application_name = ""}, now).error().code, Errc::invalid_argument);
+    EXPECT_TRUE(makeIdentity({.application_name = std::string(64, 'a')}, now));
+    const auto refused = makeIdentity({.application_name = std::string(65, 'a')}, now);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::invalid_argument);
+    EXPECT_THAT(refused.error().message, HasSubstr("1 to 64 bytes, not 65"));
+    const std::string cut("arm\0 7", 6);
+    EXPECT_FALSE(makeIdentity({.application_name = cut}, now)) << "the certificate would say arm";
+}
+
+TEST(Identity, IsRefusedWithAnAddressThatIsNone) {
+    const auto now = std::chrono::system_clock::now();
+    for (const auto* host : {"10.0.0.256", "1.2.3", "1.2.3.4.5", "...", "7"}) {
+        const auto refused = makeIdentity({.hosts = {"localhost", host}}, now);
+        ASSERT_FALSE(refused) << host;
+        EXPECT_EQ(refused.error().code, Errc::invalid_argument) << host;
+        EXPECT_THAT(refused.error().message, HasSubstr(std::string("IP:") + host));
+    }
+}
+
+TEST(Identity, IsValidForADayToAHundredYears) {
+    using std::chrono::days;
+    const auto now = std::chrono::system_clock::now();
+    const auto shortest = makeIdentity({.lifetime = days(1)}, now).value();
+    EXPECT_GT(shortest.certificate.notAfter(), now + 23h);
+    EXPECT_GT(makeIdentity({.lifetime = days(36'525)}, now)->certificate.notAfter(),
+              now + days(36'524));
+    for (const auto lifetime : {days(0), days(-1), days(36'526), days::max()}) {
+        EXPECT_EQ(makeIdentity({.lifetime = lifetime}, now).error().code, Errc::invalid_argument);
+        EXPECT_EQ(makeSuccessor(shortest, lifetime, now).error().code, Errc::invalid_argument);
+    }
+}
+
+TEST_F(IdentityFolder, KeepsTheFormerIdentityIfTheNewOneCannotBeWritten) {
+    const auto former = makeIdentity({}, now_).value();
+    ASSERT_TRUE(saveIdentity(folder_, former));
+    const auto unknown = std::filesystem::path("/proc/self/identity");
+    EXPECT_EQ(saveIdentity(unknown, former).error().code, Errc::resource_unavailable);
+    // A folder in the place of the certificate: the identity itself is written first, whole.
+    std::filesystem::remove(folder_ / "certificate.der");
+    std::filesystem::create_directories(folder_ / "certificate.der" / "x");
+    const auto next = makeIdentity({}, now_).value();
+    const auto refused = saveIdentity(folder_, next);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("certificate.der"));
+    EXPECT_EQ(loadIdentity(folder_)->certificate, next.certificate);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 2)
+        << "nothing is left of what could not be written";
+}
+
 }  // namespace
 }  // namespace metier::security

@@ -3,16 +3,25 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <fstream>
 #include <string>
 
 namespace metier::security {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::chrono_literals;
 
 class KnownServersTest : public ::testing::Test {
 protected:
     KnownServersTest() { fs::remove_all(folder_); }
+    /// Files as of other addresses; quicker than to note these.
+    void fillUp(int count) const {
+        for (int i = 0; i < count; ++i) {
+            std::ofstream(folder_ / "closed" / std::to_string(i)).flush();
+        }
+    }
 
     const fs::path folder_ = fs::path(::testing::TempDir()) / "known_servers" /
                              ::testing::UnitTest::GetInstance()->current_test_info()->name();
@@ -64,6 +73,51 @@ TEST_F(KnownServersTest, AreAThousandAtMost) {
     }
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "closed"), {}), 1'000);
     EXPECT_TRUE(known_.isClosed("opc.tcp://cell:1010"));
+}
+
+TEST_F(KnownServersTest, AreForgottenInTheOrderInWhichTheyWereNoted) {
+    const auto note = [&](const std::string& url) { ASSERT_TRUE(known_.noteClosed(url)); };
+    note("opc.tcp://first:1");
+    note("opc.tcp://second:1");
+    for (const auto& file : fs::directory_iterator(folder_ / "closed")) {
+        const bool first = file.path().filename().string().starts_with("first");
+        fs::last_write_time(file, fs::file_time_type::clock::now() - (first ? 2h : 1h));
+    }
+    fillUp(998);
+    note("opc.tcp://second:1");
+    EXPECT_TRUE(known_.isClosed("opc.tcp://first:1")) << "a known address makes no room";
+    note("opc.tcp://third:1");
+    EXPECT_FALSE(known_.isClosed("opc.tcp://first:1"));
+    EXPECT_TRUE(known_.isClosed("opc.tcp://second:1"));
+    note("opc.tcp://fourth:1");
+    EXPECT_FALSE(known_.isClosed("opc.tcp://second:1"));
+    EXPECT_TRUE(known_.isClosed("opc.tcp://third:1"));
+}
+
+TEST_F(KnownServersTest, AreAThousandAlsoIfOthersPutMoreThere) {
+    fs::create_directories(folder_ / "closed");
+    fillUp(1'010);
+    ASSERT_TRUE(known_.noteClosed("opc.tcp://cell:1"));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "closed"), {}), 1'000);
+    EXPECT_TRUE(known_.isClosed("opc.tcp://cell:1"));
+}
+
+TEST_F(KnownServersTest, AreNotNotedWhereNoFolderCanBe) {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "closed") << "a file";
+    const auto noted = known_.noteClosed("opc.tcp://cell:1");
+    ASSERT_FALSE(noted);
+    EXPECT_EQ(noted.error().code, Errc::resource_unavailable);
+    EXPECT_FALSE(known_.isClosed("opc.tcp://cell:1"));
+    EXPECT_FALSE(known_.forget("opc.tcp://cell:1").value());
+}
+
+// The folder may hold the address: an open server there is not taken for the known one.
+TEST_F(KnownServersTest, MayBeClosedIfTheFolderCannotBeExamined) {
+    fs::create_directories(folder_);
+    fs::create_symlink("closed", folder_ / "closed");  // leads to itself
+    EXPECT_TRUE(known_.isClosed("opc.tcp://cell:1"));
+    EXPECT_EQ(known_.forget("opc.tcp://cell:1").error().code, Errc::resource_unavailable);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <string>
 
 namespace metier::security {
@@ -158,6 +159,67 @@ TEST_F(Logins, RememberWhoIsBarredLongest) {
         static_cast<void>(guard_->check("anna", "", "panel" + std::to_string(i)));
     }
     EXPECT_THAT(right().error().message, HasSubstr("too many")) << "who is barred is kept longest";
+}
+
+TEST_F(Logins, AreNobodysOnceTheFileIsGone) {
+    ASSERT_EQ(guard_->roleOf("anna"), Role::operator_);
+    std::filesystem::remove(file_);
+    EXPECT_EQ(right().error().message, "unknown user or wrong password");
+    EXPECT_EQ(guard_->roleOf("anna"), std::nullopt);
+}
+
+TEST_F(Logins, AreThoseOfAFileThatIsMadeLater) {
+    std::filesystem::remove(file_);
+    auto guard = LoginGuard::open(file_, clock_).value();
+    EXPECT_EQ(guard.roleOf("anna"), std::nullopt);
+    UserTable table;
+    ASSERT_TRUE(table.add("anna", Role::engineer, "right password"));
+    ASSERT_TRUE(table.save(file_));
+    EXPECT_EQ(guard.check("anna", "right password", "panel"), Role::engineer);
+    EXPECT_EQ(guard.roleOf("anna"), Role::engineer);
+}
+
+TEST_F(Logins, AreNoneWithAFileThatIsWrong) {
+    std::ofstream(file_) << "anna Boss $y$x\n";
+    const auto guard = LoginGuard::open(file_, clock_);
+    ASSERT_FALSE(guard);
+    EXPECT_THAT(guard.error().message, HasSubstr("users:1: "));
+}
+
+TEST_F(Logins, CountNamesThatDifferBehindTheirLongestAsOne) {
+    const std::string longest(64, 'x');
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_FALSE(guard_->check(longest + std::to_string(i), "a guess", "panel"));
+    }
+    EXPECT_THAT(guard_->check(longest + "9", "a guess", "panel").error().message,
+                HasSubstr("too many"));
+}
+
+TEST_F(Logins, DoNotLengthenTheWaitOfWhoTriesMeanwhile) {
+    failFiveTimes();
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_THAT(wrong().error().message, HasSubstr("wait 1 s"));
+    }
+    clock_.advance(1s);
+    EXPECT_TRUE(right());
+}
+
+TEST_F(Logins, RememberTheGuessesOfAnApplicationForTenMinutes) {
+    const auto guess = [&](int i) {
+        EXPECT_FALSE(guard_->check("user" + std::to_string(i), "a guess", "panel"));
+    };
+    for (int i = 0; i < 20; ++i) {
+        guess(i);
+    }
+    clock_.advance(10min);
+    EXPECT_FALSE(wrong());
+    EXPECT_THAT(right().error().message, HasSubstr("wait 1 s")) << "not over ten minutes ago";
+    clock_.advance(10min + 1ms);
+    guess(20);
+    guess(20);
+    EXPECT_EQ(guard_->check("user20", "a guess", "panel").error().message,
+              "unknown user or wrong password")
+        << "five attempts again";
 }
 
 }  // namespace

@@ -101,5 +101,69 @@ TEST_F(AuditParts, AreInAFolderForTheirOwnerAlone) {
     EXPECT_EQ(found.st_mode & 0777U, 0700U);
 }
 
+TEST_F(AuditParts, AreFoundInTheFolderInWhichAProcessRuns) {
+    append({"Start", "Halt"});
+    const auto before = std::filesystem::current_path();
+    std::filesystem::current_path(file_.parent_path());
+    const auto parts = partsOf("arm.log");
+    const auto verified = verify("arm.log");
+    {
+        const auto log = AuditLog::open({.file = "arm.log", .on_write_state = {}, .part_size = 1});
+        EXPECT_TRUE(log);
+        (*log)->append({std::chrono::system_clock::now(), "Reset", {}});
+    }
+    std::filesystem::current_path(before);
+    EXPECT_THAT(parts, ElementsAre("arm.log", "arm.2.log"));
+    ASSERT_TRUE(verified) << verified.error().message;
+    EXPECT_EQ(verified->entries, 3U);
+    const auto all = verify(file_);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(all->entries, 5U) << "it went on at its end";
+}
+
+// "arm.20261124.log" is a copy; "arm.02.log" is not a name that the log gives.
+TEST_F(AuditParts, AreNotCopiesWithADateInTheirName) {
+    append({"Start", "Halt"});
+    for (const auto* name : {"arm.20261124.log", "arm.4294967295.log", "arm.02.log", "arm.0.log",
+                             "arm.1.log", "arm.1000000.log"}) {
+        std::filesystem::copy_file(file_, file_.parent_path() / name);
+    }
+    EXPECT_THAT(partsOf(file_), ElementsAre(file_, partOf(file_, 2)));
+    append({"Reset"});
+    const auto all = verify(file_);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(all->entries, 5U);
+    std::filesystem::rename(file_.parent_path() / "arm.02.log", partOf(file_, 5));
+    EXPECT_THAT(verify(file_).error().message, HasSubstr("arm.4.log cannot be read"));
+}
+
+TEST_F(AuditParts, GoOnAfterAnIncompleteFirstLine) {
+    append({"Start"});
+    std::ofstream(partOf(file_, 2)) << R"({"n":2,"ti)";
+    append({"Halt"});
+    const auto all = verify(file_);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_GE(all->entries, 4U) << "Start, LineDropped and Halt, and where the chain goes on";
+    std::ofstream(partOf(file_, lastPart(file_) + 1)) << "notes\n";
+    EXPECT_EQ(AuditLog::open({.file = file_, .on_write_state = {}}).error().code,
+              Errc::invalid_argument);
+}
+
+TEST_F(AuditParts, StayOneWhereTheNextCannotBeMade) {
+    append({"Start"});
+    {
+        const auto log = open();
+        std::filesystem::create_directories(partOf(file_, 2));
+        for (const auto* event : {"Halt", "Reset"}) {
+            log->append({std::chrono::system_clock::now(), event, {}});
+            ASSERT_TRUE(log->flush(std::chrono::steady_clock::now() + 10s));
+        }
+    }
+    std::filesystem::remove(partOf(file_, 2));
+    const auto all = verify(file_);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(all->entries, 3U);
+}
+
 }  // namespace
 }  // namespace metier::security

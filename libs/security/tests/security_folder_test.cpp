@@ -102,5 +102,56 @@ TEST_F(SecurityFolderTest, GivesApplicationsRoles) {
     EXPECT_EQ(folder.roleOf(thumbprint), std::nullopt) << "no role of that name";
 }
 
+TEST_F(SecurityFolderTest, NamesItsIdentitiesInTheirOrder) {
+    auto folder = open();
+    for (const auto* name : {"ur5", "arm", "gripper"}) {
+        ASSERT_TRUE(folder.identity(name, options_, now_));
+    }
+    fs::create_directories(path_ / "own" / "empty");
+    fs::permissions(folder.identityFolder("gripper") / "identity.pem", fs::perms::others_read,
+                    fs::perm_options::add);
+    std::vector<std::string> names;
+    for (const auto& own : folder.own()) {
+        names.push_back(own.name);
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"arm", "ur5"})) << "those that can be read";
+}
+
+TEST_F(SecurityFolderTest, TakesNamesUpToTheirLimit) {
+    auto folder = open();
+    EXPECT_TRUE(folder.identity(std::string(100, 'a'), options_, now_));
+    EXPECT_EQ(folder.identity(std::string(101, 'a'), options_, now_).error().code,
+              Errc::invalid_argument);
+}
+
+TEST_F(SecurityFolderTest, TrustsNoIdentityThatItCouldNotMake) {
+    auto folder = open();
+    EXPECT_EQ(folder.identity("arm", {.hosts = {"a b"}}, now_).error().code,
+              Errc::invalid_argument);
+    EXPECT_TRUE(folder.own().empty());
+    EXPECT_TRUE(folder.roles().empty());
+    EXPECT_TRUE(TrustStore::open(folder.trustFolder())->trusted().empty());
+}
+
+TEST_F(SecurityFolderTest, ListsRolesOfApplications) {
+    auto folder = open();
+    EXPECT_TRUE(folder.roles().empty());
+    const auto arm = folder.identity("arm", options_, now_)->certificate;
+    const auto page = folder.identity("page", options_, now_)->certificate;
+    ASSERT_TRUE(folder.setRole(page, Role::security_admin));
+    std::ofstream(path_ / "roles" / "notes.txt") << "Operator\n";
+    std::ofstream(path_ / "roles" / std::string(40, 'a')) << "Operator and more\n";
+    std::ofstream(path_ / "roles" / std::string(40, 'B')) << "Operator\n";
+    const std::map<std::string, Role> both{{arm.thumbprint(), Role::operator_},
+                                           {page.thumbprint(), Role::security_admin}};
+    EXPECT_EQ(folder.roles(), both);
+}
+
+TEST_F(SecurityFolderTest, IsRefusedWhereAFileIs) {
+    fs::create_directories(path_.parent_path());
+    std::ofstream(path_) << "x";
+    EXPECT_EQ(SecurityFolder::open(path_).error().code, Errc::resource_unavailable);
+}
+
 }  // namespace
 }  // namespace metier::security

@@ -227,5 +227,98 @@ TEST_F(Trust, KeepsTheLatestHundredToDecideOn) {
     EXPECT_THAT(kept, ::testing::Not(::testing::Contains(first)));
 }
 
+TEST_F(Trust, EndsForEveryCopyOfACertificate) {
+    const auto client = selfSigned({});
+    put("trusted/certs/by hand.pem", client.pem());
+    ASSERT_TRUE(store_.trust(client));
+    const auto other = selfSigned({.name = "other"});
+    ASSERT_TRUE(store_.trust(other));
+    ASSERT_TRUE(store_.distrust(client.thumbprint()));
+    EXPECT_THAT(store_.trusted(), ElementsAre(other));
+    EXPECT_EQ(verdictOn(client), "untrusted");
+}
+
+TEST_F(Trust, HoldsFromTheFirstToTheLastMomentOfACertificate) {
+    const auto client = selfSigned({});
+    ASSERT_TRUE(store_.trust(client));
+    const auto isTrusted = [&](UtcTime time) {
+        return store_.check(client.der(), time).has_value();
+    };
+    EXPECT_FALSE(isTrusted(client.notBefore() - 1s));
+    EXPECT_TRUE(isTrusted(client.notBefore()));
+    EXPECT_TRUE(isTrusted(client.notAfter()));
+    EXPECT_FALSE(isTrusted(client.notAfter() + 1s));
+    EXPECT_THAT(store_.check(client.der(), client.notAfter() + 1s).error().message,
+                HasSubstr("was valid until " + dateText(client.notAfter())));
+    EXPECT_THAT(store_.check(client.der(), client.notBefore() - 1s).error().message,
+                HasSubstr("is valid from " + dateText(client.notBefore())));
+}
+
+TEST_F(Trust, NeedsTheRootOfAnAuthorityAndItsList) {
+    const Authority root("root");
+    const Authority factory("factory", &root);
+    const auto arm = factory.sign({.name = "arm"});
+    ASSERT_TRUE(store_.trust(factory.certificate()));
+    put("trusted/crl/factory.crl", factory.revocationList());
+    EXPECT_EQ(verdictOn(arm), "untrusted") << "its root is not known";
+    put("issuers/certs/root.der", root.certificate().der());
+    EXPECT_EQ(verdictOn(arm), "revocation_unknown") << "the root may have revoked the authority";
+    put("issuers/crl/root.crl", root.revocationList(factory.certificate()));
+    EXPECT_EQ(verdictOn(arm), "revoked");
+    put("issuers/crl/root.crl", root.revocationList());
+    EXPECT_EQ(verdictOn(arm), "trusted");
+}
+
+TEST_F(Trust, OfOneInPersonIsNotEndedByAStrangersList) {
+    const Authority factory("factory");
+    const Authority stranger("factory");
+    const auto arm = factory.sign({.name = "arm"});
+    ASSERT_TRUE(store_.trust(arm));
+    put("issuers/certs/factory.der", factory.certificate().der());
+    put("issuers/crl/factory.crl", stranger.revocationList(arm));
+    EXPECT_EQ(verdictOn(arm), "trusted");
+    put("issuers/crl/factory.crl", factory.revocationList(arm, now_ - 1min));
+    EXPECT_EQ(verdictOn(arm), "revoked") << "a list that is out of date still names it";
+}
+
+TEST_F(Trust, KeepsRevocationListsBesideTheirAuthority) {
+    const Authority factory("factory");
+    put("issuers/certs/factory.der", factory.certificate().der());
+    put("list.crl", factory.revocationList());
+    ASSERT_TRUE(store_.addRevocationList(folder_ / "list.crl"));
+    const auto kept = factory.certificate().thumbprint() + ".crl";
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "issuers/crl" / kept));
+    ASSERT_TRUE(store_.trust(factory.certificate()));
+    ASSERT_TRUE(store_.addRevocationList(folder_ / "list.crl"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "trusted/crl" / kept));
+    const auto missing = store_.addRevocationList(folder_ / "none.crl");
+    EXPECT_EQ(missing.error().code, Errc::not_found);
+    EXPECT_THAT(missing.error().message, HasSubstr("no such file"));
+}
+
+TEST_F(Trust, RefusesAlsoWhereNothingCanBeKept) {
+    std::filesystem::remove_all(folder_ / "rejected");
+    put("rejected", "a file");
+    const auto stranger = selfSigned({});
+    store_.keepRejected(stranger);
+    EXPECT_THAT(store_.rejected(), IsEmpty());
+    EXPECT_EQ(verdictOn(stranger), "untrusted");
+    std::filesystem::remove_all(folder_ / "trusted/certs");
+    put("trusted/certs", "a file");
+    EXPECT_EQ(store_.trust(stranger).error().code, Errc::resource_unavailable);
+    EXPECT_EQ(TrustStore::open(folder_).error().code, Errc::resource_unavailable);
+}
+
+TEST_F(Trust, TakesTheFirstThousandFilesByTheirNames) {
+    for (int i = 0; i < 1'000; ++i) {
+        put("trusted/certs/" + std::to_string(i), "nothing");
+    }
+    const auto client = selfSigned({});
+    put("trusted/certs/A.der", client.der());
+    EXPECT_THAT(store_.trusted(), IsEmpty()) << "digits come first";
+    std::filesystem::rename(folder_ / "trusted/certs/A.der", folder_ / "trusted/certs/0.der");
+    EXPECT_THAT(store_.trusted(), ElementsAre(client));
+}
+
 }  // namespace
 }  // namespace metier::security

@@ -108,5 +108,83 @@ TEST(Roles, HaveTheirNamesOfOpcUa) {
     EXPECT_FALSE(roleNamed("operator"));
 }
 
+TEST(Users, HaveNamesAndPasswordsUpToTheirLimits) {
+    UserTable table;
+    const std::string longest(64, 'a');
+    EXPECT_TRUE(table.add(longest, Role::observer, std::string(256, 'x')));
+    EXPECT_TRUE(table.add("anna", Role::observer, "8 letter"));
+    EXPECT_FALSE(table.add("bert", Role::observer, "7 lette"));
+    EXPECT_TRUE(isPassword(std::string(256, 'x'), table.find(longest)->password_hash));
+    EXPECT_FALSE(isPassword(std::string(257, 'x'), table.find(longest)->password_hash));
+}
+
+// crypt() would stop at the first zero: the rest of the password would not count.
+TEST(Users, HaveNoPasswordWithAZeroInIt) {
+    UserTable table;
+    const std::string cut("long enough\0 and more", 21);
+    EXPECT_EQ(table.add("anna", Role::observer, cut).error().code, Errc::invalid_argument);
+    ASSERT_TRUE(table.add("anna", Role::observer, "long enough"));
+    EXPECT_EQ(table.setPassword("anna", cut).error().code, Errc::invalid_argument);
+    EXPECT_TRUE(isPassword("long enough", table.find("anna")->password_hash)) << "as before";
+}
+
+TEST(Users, KeepTheirPasswordIfANewOneIsRefused) {
+    UserTable table;
+    ASSERT_TRUE(table.add("anna", Role::engineer, "first password"));
+    EXPECT_EQ(table.setPassword("anna", "short").error().code, Errc::invalid_argument);
+    EXPECT_TRUE(isPassword("first password", table.find("anna")->password_hash));
+    EXPECT_EQ(table.find("anna")->role, Role::engineer);
+}
+
+TEST(Users, HaveNoPasswordIfTheirHashIsNone) {
+    for (const auto* hash : {"", "*", "!", "x", "$y$", "long enough"}) {
+        EXPECT_FALSE(isPassword("long enough", hash)) << hash;
+        EXPECT_FALSE(isPassword("", hash)) << hash;
+    }
+}
+
+TEST(Users, OfAFileThatIsTooLargeAreNotTakenForNone) {
+    const auto file = freshFile();
+    ASSERT_TRUE(UserTable().save(file));
+    const std::string line = "user Operator $y$x\n";
+    std::ofstream(file) << std::string(65'536 - line.size() - 1, '#') << '\n' << line;
+    const auto whole = UserTable::load(file);
+    ASSERT_TRUE(whole) << whole.error().message;
+    EXPECT_THAT(whole->users(), SizeIs(1));
+    std::ofstream(file, std::ios::app) << '#';
+    const auto refused = UserTable::load(file);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::invalid_argument);
+    EXPECT_THAT(refused.error().message, HasSubstr("over 64 kB"));
+}
+
+TEST(Users, ThatCannotBeReadAreNotTakenForNone) {
+    const auto file = freshFile();
+    std::filesystem::create_directories(file);  // a folder in place of the file
+    ::chmod(file.c_str(), 0700);
+    EXPECT_EQ(UserTable::load(file).error().code, Errc::invalid_argument);
+}
+
+TEST(Users, AreNotSavedInAFileThatCouldNotBeLoaded) {
+    const auto file = freshFile();
+    UserTable table;
+    ASSERT_TRUE(table.save(file));
+    std::ofstream more(file, std::ios::app);
+    for (int i = 100; i < 885; ++i) {  // just below 64 kB as they are, above with their comment
+        more << "user" << i << " Operator " << std::string(65, 'x') << '\n';
+    }
+    more.close();
+    table = UserTable::load(file).value();
+    for (int i = 0; std::filesystem::file_size(file) < 65'536 && i < 20; ++i) {
+        ASSERT_TRUE(table.add("more" + std::to_string(i), Role::observer, "long enough"));
+        if (const auto saved = table.save(file); !saved) {
+            EXPECT_THAT(saved.error().message, HasSubstr("users are over 64 kB"));
+            EXPECT_TRUE(UserTable::load(file)) << "as before";
+            return;
+        }
+    }
+    FAIL() << "never refused";
+}
+
 }  // namespace
 }  // namespace metier::security

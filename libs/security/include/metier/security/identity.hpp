@@ -21,13 +21,13 @@ struct Identity {
 
 /// Content of a new certificate.
 struct IdentityOptions {
-    /// Common name (CN) of the certificate.
+    /// Common name (CN) of the certificate, 1 to 64 bytes.
     std::string application_name = "metier";
     /// URI in its SubjectAltName, which must be the ApplicationUri of the application.
     std::string application_uri = "urn:metier";
     /// Host names and IPv4 addresses at which the application is reached.
     std::vector<std::string> hosts{"localhost"};
-    /// Time from now to the end of the certificate's validity.
+    /// Time from now to the end of the certificate's validity, 1 to 36,525 days.
     std::chrono::days lifetime{730};
     /// Length of the RSA key [bit], 2048 to 4096.
     int key_bits = 2048;
@@ -40,7 +40,7 @@ Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now);
 
 /// Makes a new key and a certificate with the names of the former identity.
 /// \param lifetime time from `now` to the end of its validity
-/// Errors: internal (the library).
+/// Errors: invalid_argument (the lifetime), internal (the library).
 /// Threads: any; takes up to a second.
 Result<Identity> makeSuccessor(const Identity& former, std::chrono::days lifetime, UtcTime now);
 

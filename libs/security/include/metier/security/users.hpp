@@ -53,7 +53,7 @@ public:
     /// Errors: access_denied (others may read the file), invalid_argument, naming the line.
     static Result<UserTable> load(const std::filesystem::path& file);
     /// Writes the file, readable by its owner only. Waits for the disk.
-    /// Errors: resource_unavailable.
+    /// Errors: resource_unavailable, invalid_argument (over 64 kB).
     Result<void> save(const std::filesystem::path& file) const;
 
     /// All users; valid until the table changes.
