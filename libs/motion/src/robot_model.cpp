@@ -73,6 +73,12 @@ Result<void> checkRest(const ChainDescription& chain) {
         return fail(Errc::invalid_argument, "the flange frame is not a rigid transform");
     }
     for (const ToolFrame& tool : chain.tools) {
+        if (!(tool.mass >= 0) || !std::isfinite(tool.mass) || !tool.centre_of_mass.allFinite()) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("tool frame \"{}\": mass {} kg, or its centre of mass, is not "
+                                    "a finite number >= 0",
+                                    tool.name, tool.mass));
+        }
         if (tool.name.empty() || tool.name == "flange" || !isRigid(tool.flange_from_tool)) {
             return fail(
                 Errc::invalid_argument,

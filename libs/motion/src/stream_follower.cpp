@@ -63,7 +63,7 @@ Result<StreamFollower> StreamFollower::create(const RobotModel& model, const Str
         return fail(Errc::invalid_argument,
                     fmt::format("start is not {} finite joint values", model.axisCount()));
     }
-    if (options.cycle.count() <= 0 || options.stale_cycles < 1 || !(options.jump_factor > 0) ||
+    if (!(options.cycle.count() > 0) || options.stale_cycles < 1 || !(options.jump_factor > 0) ||
         !(options.jerk_factor > 0)) {
         return fail(Errc::invalid_argument,
                     fmt::format("stream options: cycle {} s, stale after {} cycles, jump factor {},"
@@ -118,8 +118,8 @@ std::optional<StreamRefusal> StreamFollower::check(const JointVector& position,
                              static_cast<double>(axes)};
     }
     const bool first = knot_count_ == 0;
-    if (!first && !(time > knot(0).time)) {
-        return StreamRefusal{Reason::not_later, 0, time, knot(0).time};
+    if (!std::isfinite(time) || (!first && time <= knot(0).time)) {
+        return StreamRefusal{Reason::not_later, 0, time, first ? 0.0 : knot(0).time};
     }
     const JointVector& before = first ? now_.position : knot(0).position;
     const double between = first

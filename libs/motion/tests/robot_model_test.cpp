@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "test_robots.hpp"
@@ -133,6 +135,78 @@ TEST(RobotModel, RefusesMoreAxesThanItCanHold) {
     ChainDescription chain = loadRobot("iiwa7").chain();
     chain.joints.push_back(chain.joints.back());
     EXPECT_THAT(RobotModel::fromChain(chain).error().message, HasSubstr("8 axes"));
+}
+
+/// The error of a UR5's chain after a change; empty if it is still accepted.
+template <typename Change>
+std::string errorOfChain(Change change) {
+    ChainDescription chain = loadRobot("ur5").chain();
+    change(chain);
+    const auto model = RobotModel::fromChain(std::move(chain));
+    EXPECT_TRUE(model || model.error().code == Errc::invalid_argument);
+    return model ? std::string() : model.error().message;
+}
+
+TEST(RobotModel, RefusesAChainWithANumberThatIsNoLimit) {
+    using Chain = ChainDescription;
+    EXPECT_EQ(errorOfChain([](Chain&) {}), "");
+    for (const double wrong : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        for (const auto limit :
+             {&JointLimits::velocity, &JointLimits::acceleration, &JointLimits::jerk}) {
+            EXPECT_THAT(errorOfChain([&](Chain& c) { c.joints[1].limits.*limit = wrong; }),
+                        HasSubstr("axis 2 (shoulder): a velocity, acceleration or jerk limit is"));
+        }
+        for (const auto limit :
+             {&CartesianLimits::velocity, &CartesianLimits::acceleration, &CartesianLimits::jerk,
+              &CartesianLimits::angular_velocity, &CartesianLimits::angular_acceleration,
+              &CartesianLimits::angular_jerk}) {
+            EXPECT_THAT(errorOfChain([&](Chain& c) { c.cartesian_limits.*limit = wrong; }),
+                        HasSubstr("a Cartesian limit or the cycle time is"));
+        }
+        EXPECT_NE(errorOfChain([&](Chain& c) { c.cycle_time = wrong; }), "") << wrong;
+    }
+    EXPECT_NE(errorOfChain([](Chain& c) { c.joints[0].limits.lower = std::nan(""); }), "");
+    EXPECT_THAT(errorOfChain([](Chain& c) { c.joints[0].limits.upper = c.joints[0].limits.lower; }),
+                HasSubstr("axis 1 (base): position limits"));
+}
+
+TEST(RobotModel, RefusesAChainWithAFrameThatIsNotRigid) {
+    using Chain = ChainDescription;
+    const auto bent = [](Pose& pose) { pose.rotation.coeffs() *= 1.001; };
+    const auto lost = [](Pose& pose) { pose.translation.y() = std::nan(""); };
+    EXPECT_THAT(errorOfChain([&](Chain& c) { bent(c.joints[5].parent_from_joint); }),
+                HasSubstr("axis 6"));
+    EXPECT_THAT(errorOfChain([&](Chain& c) { lost(c.joints[0].parent_from_joint); }),
+                HasSubstr("axis 1"));
+    EXPECT_THAT(errorOfChain([&](Chain& c) { lost(c.last_from_flange); }),
+                HasSubstr("the flange frame"));
+    EXPECT_THAT(errorOfChain([&](Chain& c) { c.joints[3].axis.x() = std::nan(""); }),
+                HasSubstr("axis 4"));
+    EXPECT_THAT(errorOfChain([&](Chain& c) {
+                    c.tools.push_back({"drill", {}});
+                    bent(c.tools.back().flange_from_tool);
+                }),
+                HasSubstr("tool frame \"drill\""));
+}
+
+TEST(RobotModel, RefusesToolsWithoutAUsableNameOrMass) {
+    const auto errorOf = [](const ToolFrame& tool) {
+        return errorOfChain([&](ChainDescription& c) { c.tools = {tool}; });
+    };
+    EXPECT_EQ(errorOf({"drill", {}, 1.5}), "");
+    EXPECT_THAT(errorOf({"flange", {}}), HasSubstr("reserved name"));
+    EXPECT_THAT(errorOf({"", {}}), HasSubstr("reserved name"));
+    for (const double wrong : {-0.1, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        EXPECT_THAT(errorOf({"drill", {}, wrong}), HasSubstr("tool frame \"drill\": mass"));
+    }
+    EXPECT_THAT(errorOf({"drill", {}, 1.5, {0, 0, std::nan("")}}), HasSubstr("centre of mass"));
+}
+
+TEST(RobotModel, RefusesAHomeOfAnotherNumberOfAxes) {
+    EXPECT_THAT(errorOfChain([](ChainDescription& c) { c.home = JointVector(5); }),
+                HasSubstr("home has 5 values for 6 axes"));
+    EXPECT_NE(errorOfChain([](ChainDescription& c) { c.home[2] = std::nan(""); }), "");
+    EXPECT_THAT(errorOfChain([](ChainDescription& c) { c.joints.clear(); }), HasSubstr("0 axes"));
 }
 
 }  // namespace

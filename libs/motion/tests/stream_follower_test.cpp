@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "metier/motion/planner.hpp"
@@ -241,6 +242,99 @@ TEST_F(StreamFollowerTest, RefusesOptionsThatMakeNoSense) {
     EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0.01)}, JointVector(7)));
     EXPECT_FALSE(StreamFollower::create(model_, {.cycle = Seconds(0.01), .braking_factor = 0.9},
                                         model_.home()));
+}
+
+// A set-point without a time in the stream would make every later position not a number.
+TEST_F(StreamFollowerTest, RefusesATimeThatIsNotFinite) {
+    using Reason = StreamRefusal::Reason;
+    const std::array times{std::nan(""), std::numeric_limits<double>::infinity(),
+                           -std::numeric_limits<double>::infinity()};
+    for (const double t : times) {
+        const auto refusal = follower_.accept(offset(0), Seconds(t), time(0));
+        ASSERT_TRUE(refusal) << t;
+        EXPECT_EQ(refusal->reason, Reason::not_later);
+    }
+    EXPECT_EQ(follower_.state(), StreamFollower::State::waiting);
+    ASSERT_FALSE(follower_.accept(offset(0), time(0), time(0)));
+    for (const double t : times) {
+        EXPECT_EQ(follower_.accept(offset(0.1), Seconds(t), time(1))->reason, Reason::not_later)
+            << t;
+    }
+    for (int i = 1; i < 20; ++i) {
+        ASSERT_FALSE(follower_.accept(offset(0.001 * i), time(i), time(i)));
+        EXPECT_TRUE(step(i).allFinite());
+    }
+    EXPECT_GT(last_[0], model_.home()[0]);
+}
+
+TEST_F(StreamFollowerTest, AcceptsAJumpUpToItsLimitAndNoFurther) {
+    // In the time of the play-out delay: twice the velocity limit.
+    const double limit = 2.0 * model_.limits(0).velocity * 3 * kCycle;
+    EXPECT_TRUE(follower_.accept(offset(limit + 1e-9), time(0), time(0)));
+    EXPECT_TRUE(follower_.accept(offset(-limit - 1e-9), time(0), time(0)));
+    EXPECT_FALSE(follower_.accept(offset(limit - 1e-9), time(0), time(0)));
+    const auto next = [&](double angle) {
+        return follower_.accept(offset(limit + angle), time(1), time(1));
+    };
+    EXPECT_EQ(next(limit / 3 + 1e-6)->reason, StreamRefusal::Reason::jump) << "in one cycle";
+    EXPECT_FALSE(next(limit / 3 - 1e-6));
+}
+
+TEST_F(StreamFollowerTest, LeavesEverythingUnchangedByARefusedSetPoint) {
+    StreamFollower other = follower_;
+    for (int i = 0; i < 100; ++i) {
+        const auto q = offset(0.002 * i);
+        ASSERT_FALSE(follower_.accept(q, time(i), time(i)));
+        ASSERT_FALSE(other.accept(q, time(i), time(i)));
+        EXPECT_TRUE(other.accept(offset(3.0), time(i + 1), time(i)));
+        EXPECT_TRUE(other.accept(offset(std::nan("")), time(i + 1), time(i)));
+        EXPECT_TRUE(other.accept(JointVector(5), time(i + 1), time(i)));
+        EXPECT_TRUE(other.accept(q, time(i), time(i)));
+        ASSERT_EQ(other.next(time(i)).position, step(i)) << i;
+    }
+}
+
+TEST_F(StreamFollowerTest, BrakesWhenItIsStoppedInTheMidstOfAStream) {
+    int i = 0;
+    for (; i < 150; ++i) {
+        ASSERT_FALSE(follower_.accept(offset(0.2 * i * kCycle * i * kCycle), time(i), time(i)));
+        step(i);
+    }
+    follower_.stop();
+    EXPECT_EQ(follower_.state(), StreamFollower::State::stopping);
+    EXPECT_EQ(follower_.accept(offset(0), time(i), time(i))->reason,
+              StreamRefusal::Reason::timed_out);
+    for (const int end = i + 200; follower_.state() == StreamFollower::State::stopping; ++i) {
+        step(i);
+        ASSERT_LT(i, end);
+    }
+    EXPECT_LE(worst_, 1.0);
+    const auto held = last_;
+    follower_.stop();
+    EXPECT_LE(maxDifference(step(i), held), 1e-9);
+    EXPECT_EQ(follower_.state(), StreamFollower::State::timed_out);
+    EXPECT_EQ(follower_.missedCycles(), 0U);
+}
+
+TEST_F(StreamFollowerTest, RefusesEachOptionThatMakesNoSense) {
+    const auto isRefused = [&](auto change) {
+        StreamOptions options;
+        change(options);
+        const auto made = StreamFollower::create(model_, options, model_.home());
+        return !made && made.error().code == Errc::invalid_argument;
+    };
+    EXPECT_FALSE(isRefused([](StreamOptions&) {}));
+    for (const double wrong : {0.0, -1.0, std::nan("")}) {
+        EXPECT_TRUE(isRefused([&](StreamOptions& o) { o.cycle = Seconds(wrong); })) << wrong;
+        EXPECT_TRUE(isRefused([&](StreamOptions& o) { o.jump_factor = wrong; })) << wrong;
+        EXPECT_TRUE(isRefused([&](StreamOptions& o) { o.jerk_factor = wrong; })) << wrong;
+        EXPECT_TRUE(isRefused([&](StreamOptions& o) { o.braking_factor = wrong; })) << wrong;
+    }
+    EXPECT_TRUE(isRefused([](StreamOptions& o) { o.stale_cycles = 0; }));
+    EXPECT_TRUE(isRefused([](StreamOptions& o) { o.extrapolated_cycles = -1; }));
+    EXPECT_TRUE(isRefused([](StreamOptions& o) { o.standing_speed = -0.1; }));
+    EXPECT_TRUE(isRefused([](StreamOptions& o) { o.standing_speed = std::nan(""); }));
+    EXPECT_FALSE(StreamFollower::create(model_, {}, offset(std::nan(""))));
 }
 
 }  // namespace
