@@ -350,5 +350,26 @@ TEST_F(AddressSpaceTest, SharedMethodsTellTheirObject) {
     EXPECT_EQ(*objects, (std::vector<NodeId>{NodeId(2, "Cell.B"), NodeId(2, "Cell.A")}));
 }
 
+TEST_F(AddressSpaceTest, HasNothingToTellOfANodeThatIsNotThere) {
+    const NodeId nothing{2, "Nothing"};
+    EXPECT_FALSE(nodes_.exists(nothing));
+    EXPECT_EQ(nodes_.shapeOf(nothing).error().code, Errc::not_found);
+    EXPECT_EQ(nodes_.browseNameOf(nothing).error().code, Errc::not_found);
+    EXPECT_EQ(nodes_.descriptionOf(nothing).error().code, Errc::not_found);
+    EXPECT_EQ(nodes_.browse(nothing).error().code, Errc::not_found);
+    EXPECT_EQ(nodes_.deleteNode(nothing).error().code, Errc::not_found);
+    EXPECT_EQ(nodes_.namespaceIndex("urn:nobody\x1b").error().message,
+              "no namespace 'urn:nobody\xEF\xBF\xBD'");
+}
+
+TEST_F(AddressSpaceTest, HasNoValueOrShapeOfAnObject) {
+    EXPECT_FALSE(nodes_.shapeOf(kCell));
+    EXPECT_FALSE(nodes_.read(kCell));
+    EXPECT_FALSE(nodes_.write(kCell, Value::of(1.5)));
+    EXPECT_FALSE(nodes_.setDataSource(kCell, {}));
+    EXPECT_FALSE(nodes_.setMethod(kCell, {}));
+    EXPECT_TRUE(nodes_.exists(kCell)) << "as before";
+}
+
 }  // namespace
 }  // namespace metier::opcua

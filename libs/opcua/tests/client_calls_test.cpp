@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <open62541/types_generated.h>
 
+#include <new>
 #include <vector>
 
 namespace metier::opcua {
@@ -76,6 +77,40 @@ TEST_F(ClientCallsTest, MayBeAddedToWhileACallEnds) {
     calls.add(kStart, [this](const ClientCalls::Ending& /*ending*/) { addCall(kStart + 1s); });
     calls.expire(kStart);
     EXPECT_EQ(calls.nextDeadline(), kStart + 1s);
+}
+
+TEST_F(ClientCallsTest, EndsThoseWhoseDeadlineHasPassedInTheirOrder) {
+    std::vector<int> order;
+    for (const int seconds : {3, 1, 2}) {
+        calls.add(kStart + std::chrono::seconds(seconds),
+                  [&order, seconds](const auto& /*ending*/) { order.push_back(seconds); });
+    }
+    calls.expire(kStart + 2s);
+    EXPECT_EQ(order, (std::vector{1, 2}));
+    EXPECT_EQ(calls.nextDeadline(), kStart + 3s);
+}
+
+TEST_F(ClientCallsTest, EndsACallAgainIfMemoryRanOutOverItsAnswer) {
+    auto& call = calls.add(kStart + 1s, [this](const ClientCalls::Ending& ending) {
+        if (ending.response != nullptr) {
+            throw std::bad_alloc();
+        }
+        outcomes.push_back(ending.status);
+    });
+    answer(call, UA_STATUSCODE_GOOD);
+    EXPECT_EQ(outcomes, std::vector{status::kBadOutOfMemory});
+    EXPECT_EQ(calls.size(), 0U);
+    EXPECT_FALSE(calls.nextDeadline());
+}
+
+TEST_F(ClientCallsTest, EndsNoCallTwice) {
+    auto& refused = addCall(kStart + 1s);
+    auto& dropped = addCall(kStart + 1s);
+    calls.failAll(status::kBadConnectionClosed);
+    calls.refuse(refused, status::kBadNotConnected);
+    calls.drop(dropped);
+    EXPECT_EQ(outcomes, std::vector(2, status::kBadConnectionClosed));
+    EXPECT_EQ(calls.size(), 0U);
 }
 
 }  // namespace

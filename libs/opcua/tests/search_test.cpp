@@ -73,5 +73,19 @@ TEST_F(Search, TellsOfTheOthersIfOneDiscoveryServerIsDown) {
                 HasSubstr("discovery server opc.tcp://127.0.0.1:1"));
 }
 
+TEST(FoundServers, AreMergedByAddressAndSortedByName) {
+    std::vector<FoundServer> servers{{"opc.tcp://b:1", "b", "first"}};
+    merge(servers, {{"opc.tcp://a:2", "a", "second"},
+                    {"opc.tcp://b:1", "another name", "second"},
+                    {"opc.tcp://a:1", "a", "second"},
+                    {"opc.tcp://a:1", "a", "third"}});
+    std::vector<std::string> found;
+    for (const auto& server : servers) {
+        found.push_back(server.url + " " + server.name + " " + server.reported_by);
+    }
+    EXPECT_THAT(found, ElementsAre("opc.tcp://a:1 a second", "opc.tcp://a:2 a second",
+                                   "opc.tcp://b:1 b first"));
+}
+
 }  // namespace
 }  // namespace metier::opcua

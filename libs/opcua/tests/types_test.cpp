@@ -44,5 +44,36 @@ TEST(QualifiedName, PrintsItsIndexAndPrintableName) {
     EXPECT_EQ((QualifiedName{2, "Ski\x01lls"}.toString()), "2:Ski\xEF\xBF\xBDlls");
 }
 
+TEST(NodeId, IsNoneIfANumberDoesNotFit) {
+    EXPECT_EQ(NodeId::parse("ns=65535;i=4294967295"), NodeId(65'535, 4'294'967'295U));
+    for (const char* text : {"ns=65536;i=5", "ns=65538;s=Cell", "i=4294967296", "ns=2;i=4294967301",
+                             "ns=18446744073709551618;i=5", "i=-1", "i=+5", "ns=-1;i=5"}) {
+        EXPECT_EQ(NodeId::parse(text).error().code, Errc::invalid_argument) << text;
+    }
+}
+
+TEST(NodeId, IsNoneOfTextThatLacksAPart) {
+    for (const char* text :
+         {"", "ns=1", "ns=1;", "ns=;i=5", "i=", "ns=1;i=", "85", "i=85 ", " i=85", "x=4",
+          "ns=2;i=5;i=6", "g=09087e75-8e5e-499b-954f-f2a9603db28", "b=AQI", "b=%%"}) {
+        EXPECT_FALSE(NodeId::parse(text)) << text;
+    }
+    EXPECT_EQ(NodeId::parse("ns=1;s="), NodeId(1, "")) << "an empty string is one";
+    EXPECT_EQ(NodeId::parse("ns=1;s=a;i=5"), NodeId(1, "a;i=5")) << "a string may hold anything";
+}
+
+TEST(NodeId, OfEachKindIsNullWithoutContentInNamespace0) {
+    EXPECT_TRUE(NodeId(0, "").isNull());
+    EXPECT_TRUE(NodeId(0, Guid{}).isNull());
+    EXPECT_TRUE(NodeId(0, ByteString{}).isNull());
+    EXPECT_FALSE(NodeId(0, ByteString{{0}}).isNull());
+    EXPECT_NE(NodeId(1, ""), NodeId(1, ByteString{})) << "kinds differ";
+    EXPECT_NE(NodeId(1, 0U), NodeId());
+}
+
+TEST(NodeId, PrintsTextFromTheNetworkWithoutControlCharacters) {
+    EXPECT_EQ(NodeId(1, "a\x1b[2J").toString(), "ns=1;s=a\xEF\xBF\xBD[2J");
+}
+
 }  // namespace
 }  // namespace metier::opcua

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <open62541/types_generated.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <limits>
@@ -80,6 +81,29 @@ Argument sample() {
     return {"LeaseMs", NodeId(0, 7U), 1, {3}, {"", "Lease [ms]"}};
 }
 template <>
+ThreeDCartesianCoordinates sample() {
+    return {1, 2, 3};
+}
+template <>
+ThreeDOrientation sample() {
+    return {4, 5, 6};
+}
+template <>
+ProgramDiagnostic sample() {
+    return {.create_session_id = {1, 7U},
+            .create_client_name = "panel",
+            .invocation_creation_time = sample<UtcTime>(),
+            .last_transition_time = sample<UtcTime>() + 1s,
+            .last_method_call = "Start",
+            .last_method_session_id = {1, 8U},
+            .last_method_input_arguments = {sample<Argument>()},
+            .last_method_output_arguments = {sample<Argument>(), sample<Argument>()},
+            .last_method_input_values = {Value::of(2.5), Value()},
+            .last_method_output_values = {Value::of("done")},
+            .last_method_call_time = sample<UtcTime>() + 2s,
+            .last_method_return_status = status::kBadLocked};
+}
+template <>
 KeyValue sample() {
     return {{0, "MaxVelocity"}, Value::of(std::vector<double>{1.0, 2.0})};
 }
@@ -88,7 +112,8 @@ using Types =
     ::testing::Types<bool, std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
                      std::uint32_t, std::int64_t, std::uint64_t, float, double, std::string,
                      UtcTime, Guid, ByteString, NodeId, StatusCode, QualifiedName, LocalizedText,
-                     Range, EuInformation, ThreeDFrame, ThreeDVector, Argument, KeyValue>;
+                     Range, EuInformation, ThreeDFrame, ThreeDVector, ThreeDCartesianCoordinates,
+                     ThreeDOrientation, Argument, KeyValue, ProgramDiagnostic>;
 TYPED_TEST_SUITE(ValueOfEachType, Types);
 
 TYPED_TEST(ValueOfEachType, KeepsAScalar) {
@@ -276,6 +301,88 @@ TEST(Matrix, KeepsItsRows) {
     EXPECT_FALSE(Value::of(std::vector{1.0, 2.0}).asRows());
     EXPECT_FALSE(Value::of(std::string("1")).asRows());
     EXPECT_THROW(Value::ofRows({{1, 2}, {3}}), std::invalid_argument);
+}
+
+TEST(Matrix, IsNoneOfOtherDimensions) {
+    std::array<double, 6> numbers{1, 2, 3, 4, 5, 6};
+    std::array<UA_UInt32, 3> dimensions{};
+    UA_Variant variant;
+    UA_Variant_setArray(&variant, numbers.data(), numbers.size(), &UA_TYPES[UA_TYPES_DOUBLE]);
+    variant.arrayDimensions = dimensions.data();
+    const auto rowsOf = [&](const std::vector<UA_UInt32>& sizes) {
+        std::copy(sizes.begin(), sizes.end(), dimensions.begin());
+        variant.arrayDimensionsSize = sizes.size();
+        return ValueAccess::copyOf(variant).asRows();
+    };
+    EXPECT_EQ(rowsOf({2, 3})->at(1), (std::vector<double>{4, 5, 6}));
+    for (const auto& wrong : std::vector<std::vector<UA_UInt32>>{{2, 4}, {3, 3}, {6}, {1, 2, 3}}) {
+        const auto rows = rowsOf(wrong);
+        ASSERT_FALSE(rows);
+        EXPECT_EQ(rows.error().message, "Double matrix expected, Double[6] given");
+    }
+    EXPECT_FALSE(rowsOf({65'536, 65'536})) << "their product is 0 in 32 bits";
+}
+
+TEST(Value, HoldsValuesOfManyTypes) {
+    const auto mixed = Value::ofMixed({Value::of(1.5), Value::of("two"), Value()});
+    EXPECT_EQ(mixed.typeName(), "Variant[3]");
+    EXPECT_EQ(mixed, Value(mixed));
+    EXPECT_NE(mixed, Value::ofMixed({Value::of(1.5), Value::of("two")}));
+    EXPECT_THAT(mixed.toJson(), HasSubstr("two"));
+    EXPECT_TRUE(nlohmann::json::accept(mixed.toJson())) << mixed.toJson();
+    EXPECT_EQ(mixed.as<std::vector<double>>().error().code, Errc::type_mismatch);
+}
+
+TEST(Value, ReadsASubtypeAsItsBuiltInType) {
+    UA_Duration duration = 12.5;
+    UA_Variant variant;
+    UA_Variant_setScalar(&variant, &duration, &UA_TYPES[UA_TYPES_DURATION]);
+    const auto value = ValueAccess::copyOf(variant);
+    EXPECT_EQ(value.as<double>(), 12.5);
+    EXPECT_FALSE(value.as<float>());
+    std::array states{UA_SERVERSTATE_RUNNING, UA_SERVERSTATE_FAILED};
+    UA_Variant_setArray(&variant, states.data(), states.size(), &UA_TYPES[UA_TYPES_SERVERSTATE]);
+    EXPECT_EQ(ValueAccess::copyOf(variant).as<std::vector<std::int32_t>>(),
+              (std::vector<std::int32_t>{0, 1}));
+    EXPECT_FALSE(ValueAccess::copyOf(variant).as<std::vector<std::uint32_t>>());
+}
+
+// One of the structures is of another type: none of them is taken.
+TEST(Value, TakesAllOfAnArrayOrNone) {
+    UA_Range range{1.0, 2.0};
+    UA_ThreeDVector vector{1.0, 2.0, 3.0};
+    std::array<UA_ExtensionObject, 3> objects{};
+    UA_ExtensionObject_setValueNoDelete(&objects[0], &range, &UA_TYPES[UA_TYPES_RANGE]);
+    UA_ExtensionObject_setValueNoDelete(&objects[1], &vector, &UA_TYPES[UA_TYPES_THREEDVECTOR]);
+    UA_Variant variant;
+    UA_Variant_setArray(&variant, objects.data(), 2, &UA_TYPES[UA_TYPES_EXTENSIONOBJECT]);
+    EXPECT_FALSE(ValueAccess::copyOf(variant).as<std::vector<Range>>());
+    UA_Variant_setScalar(&variant, &objects[2], &UA_TYPES[UA_TYPES_EXTENSIONOBJECT]);
+    EXPECT_FALSE(ValueAccess::copyOf(variant).as<Range>()) << "it holds nothing";
+}
+
+TEST(Value, DropsWhatIsShorterThanATickOfOpcUa) {
+    const UtcTime time{1'700'000'000'123'456'789ns};
+    EXPECT_EQ(Value::of(time).as<UtcTime>(), UtcTime(1'700'000'000'123'456'700ns));
+    const UtcTime before{-1ns};
+    EXPECT_EQ(Value::of(before).as<UtcTime>(), UtcTime(-100ns)) << "never later than it was";
+}
+
+TEST(DataValue, KeepsOnlyWhatIsGiven) {
+    const auto there = [](const DataValue& value) {
+        Owned<UA_DataValue> native(UA_TYPES[UA_TYPES_DATAVALUE]);
+        toNative(value, *native);
+        return fromNative(*native);
+    };
+    const DataValue whole{Value::of(1.5), status::kBadLocked, sample<UtcTime>(),
+                          sample<UtcTime>() + 1s};
+    EXPECT_EQ(there(whole), whole);
+    EXPECT_EQ(there({}), DataValue{});
+    UA_DataValue native{};  // what is there does not count without its flag
+    native.status = UA_STATUSCODE_BADLOCKED;
+    native.sourceTimestamp = UA_DateTime{1} << 60U;
+    native.serverTimestamp = UA_DateTime{1} << 60U;
+    EXPECT_EQ(fromNative(native), DataValue{});
 }
 
 }  // namespace
