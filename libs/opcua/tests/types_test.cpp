@@ -48,7 +48,7 @@ TEST(NodeId, IsNoneIfANumberDoesNotFit) {
     EXPECT_EQ(NodeId::parse("ns=65535;i=4294967295"), NodeId(65'535, 4'294'967'295U));
     for (const char* text : {"ns=65536;i=5", "ns=65538;s=Cell", "i=4294967296", "ns=2;i=4294967301",
                              "ns=18446744073709551618;i=5", "i=-1", "i=+5", "ns=-1;i=5"}) {
-        EXPECT_EQ(NodeId::parse(text).error().code, Errc::invalid_argument) << text;
+        EXPECT_FALSE(NodeId::parse(text)) << text;
     }
 }
 
