@@ -14,10 +14,7 @@ CycleTimer::CycleTimer(asio::io_context& context, std::chrono::nanoseconds perio
 
 void CycleTimer::wait() {
     timer_.expires_at(time_base_.next());
-    timer_.async_wait([this](const asio::error_code& error) {
-        if (error) {
-            return;
-        }
+    timer_.async_wait(lifetime_.guard([this](const asio::error_code&) {
         const auto due = time_base_.begin(std::chrono::steady_clock::now());
         cycle_();
         if (next_period_) {
@@ -25,7 +22,7 @@ void CycleTimer::wait() {
             next_period_.reset();
         }
         wait();
-    });
+    }));
 }
 
 }  // namespace metier::virtual_controller

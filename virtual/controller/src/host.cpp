@@ -49,6 +49,7 @@ Result<std::unique_ptr<Host>> Host::start(HostOptions options,
     if (options.world_address.empty()) {
         host->world_ = std::make_unique<EmptyWorld>();
     } else {
+        METIER_TRY(parseAddress(options.world_address));
         host->world_ =
             std::make_unique<RemoteWorld>(host->context_, options.name, options.world_address);
     }

@@ -8,6 +8,9 @@ void PeerLines::add(TcpPeer& peer, std::span<const std::byte> bytes,
     part.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     std::size_t begin = 0;
     for (auto end = part.find('\n'); end != std::string::npos; end = part.find('\n', begin)) {
+        if (end - begin > longest_) {
+            break;
+        }
         take(std::string_view(part).substr(begin, end - begin));
         begin = end + 1;
     }

@@ -17,50 +17,51 @@ constexpr std::size_t kLongestLine = 4096;
 
 RemoteWorld::RemoteWorld(asio::io_context& context, std::string name, std::string address,
                          std::uint16_t port)
-    : name_(std::move(name)), socket_(context), retry_(context), incoming_(kLongestLine) {
+    : name_(std::move(name)),
+      wire_(std::make_shared<Wire>(context, kLongestLine)),
+      retry_(context) {
     asio::error_code ignored;
     endpoint_ = {asio::ip::make_address(address, ignored), port};
     connect();
 }
 
+RemoteWorld::~RemoteWorld() {
+    asio::error_code ignored;
+    wire_->socket.close(ignored);
+}
+
 /// A handler that calls `then` if its operation went well.
 template <typename Then>
 auto RemoteWorld::orConnectLater(Then then) {
-    return [this, then](const asio::error_code& error, auto...) {
-        if (error == asio::error::operation_aborted) {
-            return;  // the world may be destroyed
-        }
+    return lifetime_.guard([this, then, wire = wire_](const asio::error_code& error, auto...) {
         if (error) {
             connectLater();
         } else {
             then();
         }
-    };
+    });
 }
 
 void RemoteWorld::connect() {
     asio::error_code ignored;
-    socket_.close(ignored);
-    incoming_.consume(incoming_.size());
+    wire_->socket.close(ignored);
+    wire_->incoming.consume(wire_->incoming.size());
     connected_ = false;
     awaiting_ = false;
-    socket_.async_connect(endpoint_, orConnectLater([this] {
-                              asio::error_code also_ignored;
-                              socket_.set_option(asio::ip::tcp::no_delay(true), also_ignored);
-                              connected_ = true;
-                              send();
-                          }));
+    wire_->socket.async_connect(endpoint_, orConnectLater([this] {
+                                    asio::error_code also_ignored;
+                                    wire_->socket.set_option(asio::ip::tcp::no_delay(true),
+                                                             also_ignored);
+                                    connected_ = true;
+                                    send();
+                                }));
 }
 
 void RemoteWorld::connectLater() {
     connected_ = false;
     effect_ = {};
     retry_.expires_after(kRetry);
-    retry_.async_wait([this](const asio::error_code& error) {
-        if (!error) {
-            connect();
-        }
-    });
+    retry_.async_wait(lifetime_.guard([this](const asio::error_code&) { connect(); }));
 }
 
 void RemoteWorld::report(const WorldReport& report) {
@@ -75,13 +76,14 @@ void RemoteWorld::send() {
     }
     awaiting_ = true;
     unsent_ = false;
-    outgoing_ = toLine({name_, newest_});
-    asio::async_write(socket_, asio::buffer(outgoing_), orConnectLater([this] { readEffect(); }));
+    wire_->outgoing = toLine({name_, newest_});
+    asio::async_write(wire_->socket, asio::buffer(wire_->outgoing),
+                      orConnectLater([this] { readEffect(); }));
 }
 
 void RemoteWorld::readEffect() {
-    asio::async_read_until(socket_, incoming_, '\n', orConnectLater([this] {
-                               std::istream stream(&incoming_);
+    asio::async_read_until(wire_->socket, wire_->incoming, '\n', orConnectLater([this] {
+                               std::istream stream(&wire_->incoming);
                                std::string line;
                                std::getline(stream, line);
                                if (const auto effect = effectOf(line)) {

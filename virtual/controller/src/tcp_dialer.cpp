@@ -6,6 +6,7 @@
 #include <asio/post.hpp>
 #include <utility>
 
+#include "metier/virtual_controller/lifetime.hpp"
 #include "tcp_connection.hpp"
 
 namespace metier::virtual_controller {
@@ -31,20 +32,15 @@ public:
             socket_.bind(from_, error);
         }
         if (error) {
-            asio::post(socket_.get_executor(), [this, error, alive = std::weak_ptr(alive_)] {
-                if (!alive.expired()) {
-                    failed(error.message());
-                }
-            });
+            asio::post(socket_.get_executor(),
+                       lifetime_.guard([this, error] { failed(error.message()); }));
             return;
         }
-        socket_.async_connect(
-            to_, [this, alive = std::weak_ptr(alive_)](const asio::error_code& refused) {
-                if (refused == asio::error::operation_aborted || alive.expired()) {
-                    return;
-                }
+        socket_.async_connect(to_, lifetime_.guard([this](const asio::error_code& refused) {
+            if (refused != asio::error::operation_aborted) {
                 connected(refused);
-            });
+            }
+        }));
     }
     void reset() override {
         asio::error_code ignored;
@@ -75,8 +71,7 @@ private:
     tcp::endpoint from_;
     tcp::endpoint to_;
     std::function<void(const Error&)> on_failed_;
-    std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // shows late handlers whether the
-                                                                  // dialer still exists
+    Lifetime lifetime_;
 };
 
 }  // namespace

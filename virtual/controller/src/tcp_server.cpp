@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "metier/virtual_controller/lifetime.hpp"
 #include "tcp_connection.hpp"
 
 namespace metier::virtual_controller {
@@ -31,22 +32,21 @@ public:
 
 private:
     void accept() {
-        acceptor_.async_accept([this](const asio::error_code& error, tcp::socket socket) {
-            if (error == asio::error::operation_aborted) {
-                return;
-            }
-            if (!error && faults.cut.load()) {
-                unreachable_.push_back(std::move(socket));
-            } else if (!error) {
-                unreachable_.clear();
-                take(std::move(socket));
-            }
-            accept();
-        });
+        acceptor_.async_accept(
+            lifetime_.guard([this](const asio::error_code& error, tcp::socket socket) {
+                if (!error && faults.cut.load()) {
+                    unreachable_.push_back(std::move(socket));
+                } else if (!error) {
+                    unreachable_.clear();
+                    take(std::move(socket));
+                }
+                accept();
+            }));
     }
 
     tcp::acceptor acceptor_;
     std::vector<tcp::socket> unreachable_;  // dialled over a cut cable; never get an answer
+    Lifetime lifetime_;
 };
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 namespace metier::virtual_controller {
 namespace {
 
@@ -52,6 +54,18 @@ TEST(CycleTimer, TakesAnotherPeriod) {
     context.run_for(10s);
     EXPECT_EQ(calls, 10);
     EXPECT_GE(std::chrono::steady_clock::now() - begin, 181ms);
+}
+
+TEST(CycleTimer, CallsNothingOnceItIsGone) {
+    asio::io_context context;
+    int calls = 0;
+    std::unique_ptr<CycleTimer> timer;
+    asio::steady_timer earlier(context, SteadyTime{});  // due with it, and in front of it
+    earlier.async_wait([&](const asio::error_code&) { timer.reset(); });
+    timer = std::make_unique<CycleTimer>(context, 1ns, [&] { ++calls; });
+    context.run_for(10s);
+    EXPECT_FALSE(timer);
+    EXPECT_EQ(calls, 0);
 }
 
 }  // namespace

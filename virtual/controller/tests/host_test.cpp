@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <asio/post.hpp>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -98,6 +99,22 @@ TEST_F(HostOfALamp, TellsWhatIsWrongWithARequest) {
     EXPECT_THAT(host->controlAnswer("no json").dump(), HasSubstr("error"));
 }
 
+TEST_F(HostOfALamp, TakesFaultsOfTheCableUpToTheirLimits) {
+    const auto inject = [this](const std::string& name, const std::string& value) {
+        return host->controlAnswer(nlohmann::json{{"inject", name}, {"value", value}}.dump())
+            .dump();
+    };
+    EXPECT_EQ(inject("delay", "10000"), R"({"ok":true})");
+    EXPECT_EQ(inject("garble", "1000"), R"({"ok":true})");
+    for (const auto* value : {"10001", "-1", "", "1.5", "99999999999999999999"}) {
+        EXPECT_THAT(inject("delay", value), HasSubstr("0 to 10000")) << value;
+    }
+    EXPECT_THAT(inject("garble", "1001"), HasSubstr("0 to 1000"));
+    EXPECT_THAT(host->controlAnswer(R"({"inject":"delay","value":5})").dump(),
+                HasSubstr("0 to 10000"))
+        << "a number is no text";
+}
+
 TEST_F(HostOfALamp, AnswersOnItsControlPort) {
     std::jthread thread([this] { host->run(); });
     const auto deadline = std::chrono::steady_clock::now() + 5s;
@@ -148,6 +165,13 @@ TEST_F(HostInCompany, EndsOnceItsClientsHaveGone) {
     EXPECT_LT(std::chrono::steady_clock::now() - begun, 30s);
 }
 
+TEST_F(HostInCompany, AnswersOnItsControlPortWhileTheCableIsCut) {
+    std::jthread thread([this] { host->run(); });
+    asio::post(host->context(), [this] { host->controlAnswer(R"({"inject":"cut-link"})"); });
+    EXPECT_THAT(ask(), HasSubstr("cut-link"));
+    host->stop();
+}
+
 TEST_F(HostInCompany, EndsInTimeAlthoughAClientStays) {
     std::jthread thread([this] { host->run(); });
     ASSERT_THAT(ask(), HasSubstr("cut-link"));
@@ -161,6 +185,14 @@ TEST(Host, TellsWhichTypesThereAre) {
     const auto host = Host::start(options, kTypes);
     ASSERT_FALSE(host);
     EXPECT_THAT(host.error().message, HasSubstr("there are: lamp, socket"));
+}
+
+TEST(Host, RefusesAWorldWithoutAnAddress) {
+    auto options = lampOptions();
+    options.world_address = "over there";
+    const auto host = Host::start(options, kTypes);
+    ASSERT_FALSE(host);
+    EXPECT_THAT(host.error().message, HasSubstr("\"over there\" is not an address"));
 }
 
 TEST(Host, PassesOnWhatIsWrongWithTheSettings) {

@@ -141,12 +141,85 @@ TEST(TcpServer, SeesAPeerGo) {
     EXPECT_EQ(echo.closed, 1);
 }
 
+TEST(TcpServer, DropsAPeerThatLeavesMoreThanAMegabyteUnread) {
+    Echo echo;
+    auto link = echo.connect();
+    EXPECT_EQ(echoOf(link, "x"), "x");
+    echo.faults.delay_ms = 10'000;  // nothing leaves the queue
+    const std::vector<std::byte> megabyte(1'000'000);
+    const auto sendAndCount = [&](std::span<const std::byte> bytes) {
+        std::size_t queued = 0;
+        echo.inTurn([&](TcpServer& server) {
+            server.forEach([&](TcpPeer& peer) {
+                peer.send(bytes);
+                queued = peer.queued();
+            });
+        });
+        return queued;
+    };
+    EXPECT_EQ(sendAndCount(megabyte), 1'000'000U);
+    echo.faults.cut = true;
+    EXPECT_EQ(sendAndCount(std::span(megabyte).first(1)), 1'000'000U) << "lost in the cable";
+    echo.faults.cut = false;
+    EXPECT_EQ(echo.closed, 0);
+    sendAndCount(std::span(megabyte).first(1));
+    std::array<std::byte, 1> nothing{};
+    EXPECT_EQ(link.receive(nothing, in(5s)).error().code, Errc::connection_lost);
+    echo.inTurn([](TcpServer&) {});
+    EXPECT_EQ(echo.closed, 1);
+}
+
+TEST(TcpServer, NeverServesAPeerThatDialledOverACutCable) {
+    Echo echo;
+    echo.faults.cut = true;
+    auto cut_off = echo.connect();
+    EXPECT_EQ(echoOf(cut_off, "hello", 50ms), "timeout");
+    echo.faults.cut = false;
+    auto link = echo.connect();
+    EXPECT_EQ(echoOf(link, "hello"), "hello");
+    EXPECT_EQ(echo.connected, 1);
+    std::array<std::byte, 1> nothing{};
+    EXPECT_EQ(cut_off.receive(nothing, in(5s)).error().code, Errc::connection_lost);
+}
+
+TEST(TcpServer, TakesNoPeerOnceItIsGone) {
+    asio::io_context context;
+    LinkFaults faults;
+    int connected = 0;
+    std::unique_ptr<TcpServer> server;
+    server = TcpServer::listen(context, "127.0.0.1", 0, faults,
+                               {.on_connected =
+                                    [&](TcpPeer&) {
+                                        ++connected;
+                                        asio::post(context, [&] { server.reset(); });
+                                    },
+                                .on_data = {},
+                                .on_closed = {}})
+                 .value();
+    const auto first = TcpLink::connect("127.0.0.1", server->port(), in(5s));
+    const auto second = TcpLink::connect("127.0.0.1", server->port(), in(5s));
+    ASSERT_TRUE(first && second);
+    context.run_for(10s);
+    EXPECT_FALSE(server);
+    EXPECT_EQ(connected, 1);
+}
+
 TEST(TcpServer, RefusesAPortThatIsTaken) {
     Echo echo;
     asio::io_context context;
     const auto second = TcpServer::listen(context, "127.0.0.1", echo.port, echo.faults, {});
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, Errc::already_exists);
+}
+
+TEST(TcpServer, RefusesAnAddressThatIsNotOfThisMachine) {
+    asio::io_context context;
+    LinkFaults faults;
+    for (const auto* address : {"192.0.2.1", "the robot", ""}) {
+        const auto server = TcpServer::listen(context, address, 0, faults, {});
+        ASSERT_FALSE(server) << address;
+        EXPECT_EQ(server.error().code, Errc::invalid_argument) << address;
+    }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "metier/joint_simulator/time_base.hpp"
+#include "metier/virtual_controller/lifetime.hpp"
 
 namespace metier::virtual_controller {
 
@@ -36,6 +37,7 @@ private:
     joint_simulator::TimeBase time_base_;
     std::function<void()> cycle_;
     std::optional<std::chrono::nanoseconds> next_period_;
+    Lifetime lifetime_;
 };
 
 }  // namespace metier::virtual_controller

@@ -5,8 +5,11 @@
 #include <asio/steady_timer.hpp>
 #include <asio/streambuf.hpp>
 #include <chrono>
+#include <cstddef>
+#include <memory>
 #include <string>
 
+#include "metier/virtual_controller/lifetime.hpp"
 #include "metier/virtual_controller/world_link.hpp"
 
 namespace metier::virtual_controller {
@@ -27,6 +30,7 @@ public:
     /// \param address IP address of the world's process
     RemoteWorld(asio::io_context& context, std::string name, std::string address,
                 std::uint16_t port = kPort);
+    ~RemoteWorld() override;
     RemoteWorld(const RemoteWorld&) = delete;
     RemoteWorld& operator=(const RemoteWorld&) = delete;
 
@@ -37,6 +41,15 @@ public:
     const WorldEffect& effect() const override { return effect_; }
 
 private:
+    struct Wire {
+        Wire(asio::io_context& context, std::size_t longest_line)
+            : socket(context), incoming(longest_line) {}
+
+        asio::ip::tcp::socket socket;
+        asio::streambuf incoming;
+        std::string outgoing;
+    };
+
     template <typename Then>
     auto orConnectLater(Then then);
     void connect();
@@ -46,15 +59,14 @@ private:
 
     std::string name_;
     asio::ip::tcp::endpoint endpoint_;
-    asio::ip::tcp::socket socket_;
+    std::shared_ptr<Wire> wire_;  // shared with its operations, which may end after this
     asio::steady_timer retry_;
-    asio::streambuf incoming_;
-    std::string outgoing_;
     WorldReport newest_;
     WorldEffect effect_;
     bool connected_ = false;
     bool unsent_ = false;    // newest_ has not been sent
     bool awaiting_ = false;  // waits for an effect
+    Lifetime lifetime_;
 };
 
 /// A world without objects: nothing is touched, no part is between the jaws.
