@@ -58,18 +58,15 @@ std::uint16_t UdpPort::port() const {
 }
 
 void UdpPort::receive() {
-    socket_.async_receive_from(asio::buffer(incoming_.data(), incoming_.size()), from_,
-                               [this](const asio::error_code& error, std::size_t count) {
-                                   if (error == asio::error::operation_aborted) {
-                                       return;
-                                   }
-                                   // An error here reports an earlier datagram that found no
-                                   // receiver.
-                                   if (!error && !faults_.cut.load()) {
-                                       on_datagram_(from_, std::span(incoming_).first(count));
-                                   }
-                                   receive();
-                               });
+    socket_.async_receive_from(
+        asio::buffer(incoming_.data(), incoming_.size()), from_,
+        lifetime_.guard([this](const asio::error_code& error, std::size_t count) {
+            // An error here reports an earlier datagram that found no receiver.
+            if (!error && !faults_.cut.load()) {
+                on_datagram_(from_, std::span(incoming_).first(count));
+            }
+            receive();
+        }));
 }
 
 void UdpPort::send(const Endpoint& to, std::vector<std::byte> datagram) {
@@ -91,10 +88,7 @@ void UdpPort::send(const Endpoint& to, std::vector<std::byte> datagram) {
 
 void UdpPort::waitForDue() {
     timer_.expires_at(waiting_.front().due);
-    timer_.async_wait([this](const asio::error_code& error) {
-        if (error) {
-            return;
-        }
+    timer_.async_wait(lifetime_.guard([this](const asio::error_code&) {
         const auto now = std::chrono::steady_clock::now();
         while (!waiting_.empty() && waiting_.front().due <= now) {
             if (!faults_.cut.load()) {
@@ -105,7 +99,7 @@ void UdpPort::waitForDue() {
         if (!waiting_.empty()) {
             waitForDue();
         }
-    });
+    }));
 }
 
 void UdpPort::sendNow(const Endpoint& to, std::span<const std::byte> bytes) {

@@ -15,6 +15,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
+#include "metier/virtual_controller/lifetime.hpp"
 #include "metier/virtual_controller/link_faults.hpp"
 
 namespace metier::virtual_netft {
@@ -59,6 +60,7 @@ private:
     std::array<std::byte, 2048> incoming_{};
     Endpoint from_;
     std::deque<Waiting> waiting_;
+    virtual_controller::Lifetime lifetime_;
 };
 
 }  // namespace metier::virtual_netft

@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <poll.h>
+#include <unistd.h>
 
 #include <array>
 #include <asio/buffer.hpp>
@@ -65,20 +67,11 @@ double force(const Bytes& datagram) {
     return static_cast<std::int32_t>(word(datagram, 3)) / 1e6;
 }
 
-/// The sensor's whole answer, from port 8080.
-std::string get(const std::string& address, const std::string& target) {
-    const auto deadline = std::chrono::steady_clock::now() + 5s;
-    auto link = link::TcpLink::connect(address, 8080, deadline).value();
-    const std::string request = "GET " + target + " HTTP/1.1\r\nHost: sensor\r\n\r\n";
-    if (!link.send(std::as_bytes(std::span(request)), deadline)) {
-        return {};
-    }
-    std::string answer;
-    std::array<char, 512> buffer{};
-    while (const auto count = link.receive(std::as_writable_bytes(std::span(buffer)), deadline)) {
-        answer.append(buffer.data(), *count);
-    }
-    return answer;
+/// An address that no other process has, for ports that are not free ones.
+std::string ownAddress() {
+    const int process = getpid();
+    return fmt::format("127.{}.{}.{}", 64 + process / 65'536 % 64, process / 256 % 256,
+                       process % 256);
 }
 
 class NetFt : public ::testing::Test {
@@ -189,6 +182,14 @@ TEST_F(NetFt, LosesRecordsWhenToldTo) {
     EXPECT_EQ(word(client_.next(), 0), 6U);
 }
 
+TEST_F(NetFt, LosesRecordsOutOfADatagram) {
+    ASSERT_TRUE(controller_.inject("lose", "7"));
+    client_.request(3, 10);
+    const auto datagram = client_.next();
+    ASSERT_EQ(datagram.size(), 3 * 36U) << "the first datagram is lost, and two of the second";
+    EXPECT_EQ(word(datagram, 0), 8U);
+}
+
 TEST_F(NetFt, IsSilentWhileTheCableIsCut) {
     client_.request(2);
     ASSERT_FALSE(client_.next().empty());
@@ -240,86 +241,147 @@ TEST(NetFtStart, StreamsAtTheRateItIsGiven) {
     EXPECT_EQ(second - first, 1U);
 }
 
-TEST(NetFtStart, HasWebPagesOnAPortOfItsOwn) {
-    RunningController controller(
-        virtual_controller::netftController(),
-        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.5"});
-    EXPECT_THAT(get("127.73.1.5", "/netftapi2.xml"), HasSubstr("<cfgcpf>1000000</cfgcpf>"));
-    EXPECT_THAT(get("127.73.1.5", "/netftapi2.xml"), HasSubstr("<netip>127.73.1.5</netip>"));
-}
-
 TEST(NetFtStart, TakesTheNextRateThatIsAPartOfTheSamples) {
     RunningController controller(virtual_controller::netftController(),
                                  {.settings = {{"port", 0.0}, {"rate", 150.0}}});
     EXPECT_EQ(controller.state()["rate"], 152) << "7000 / 46";
 }
 
-TEST(NetFtWeb, TellsTheReadingThatIsStreamed) {
-    RunningController controller(
+/// A sensor with web pages on port 8080 of an address of its own.
+class NetFtWeb : public ::testing::Test {
+protected:
+    /// A connection to the web port.
+    class Browser {
+    public:
+        explicit Browser(const std::string& address)
+            : link_(link::TcpLink::connect(address, 8080, deadline_).value()) {}
+        void send(std::string_view text) {
+            ASSERT_TRUE(link_.send(std::as_bytes(std::span(text)), deadline_));
+        }
+        /// All that comes until the sensor ends the connection.
+        std::string rest() {
+            std::string answer;
+            std::array<char, 512> buffer{};
+            while (const auto count =
+                       link_.receive(std::as_writable_bytes(std::span(buffer)), deadline_)) {
+                answer.append(buffer.data(), *count);
+            }
+            return answer;
+        }
+
+    private:
+        const SteadyTime deadline_ = std::chrono::steady_clock::now() + 5s;
+        link::TcpLink link_;
+    };
+
+    std::string get(const std::string& target) const {
+        Browser browser(address_);
+        browser.send("GET " + target + " HTTP/1.1\r\nHost: sensor\r\n\r\n");
+        return browser.rest();
+    }
+
+    const std::string address_ = ownAddress();
+    RunningController controller_{
         virtual_controller::netftController(),
-        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.6"});
-    ASSERT_TRUE(controller.inject("wrench", "5 0 0 0 0 0"));
-    ASSERT_TRUE(controller.inject("status", "80000004"));
-    ASSERT_TRUE(controller.waitUntil([](const auto& state) {
+        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = address_}};
+    Client client_{controller_, address_};
+};
+
+TEST_F(NetFtWeb, TellsItsCalibrationAndAddress) {
+    const auto page = get("/netftapi2.xml");
+    EXPECT_THAT(page, HasSubstr("<cfgcpf>1000000</cfgcpf>"));
+    EXPECT_THAT(page, HasSubstr("<netip>" + address_ + "</netip>"));
+}
+
+TEST_F(NetFtWeb, AnswersARequestThatComesInParts) {
+    Browser browser(address_);
+    for (const auto* part : {"GET /netftapi2.xml HT", "TP/1.1\r\n", "\r", "\n"}) {
+        EXPECT_EQ(controller_.state()["http_port"], 8080) << "the part before is taken";
+        browser.send(part);
+    }
+    EXPECT_THAT(browser.rest(), HasSubstr("200 OK"));
+}
+
+TEST_F(NetFtWeb, AnswersARequestWithoutEndOnceItIsTooLong) {
+    Browser browser(address_);
+    browser.send("GET /" + std::string(8192 - 5, 'x'));
+    controller_.state();
+    EXPECT_THAT(get("/netftapi2.xml"), HasSubstr("200 OK")) << "others are served meanwhile";
+    browser.send("x");
+    EXPECT_THAT(browser.rest(), HasSubstr("400 Bad Request"));
+}
+
+TEST_F(NetFtWeb, AnswersOneRequestOfAConnection) {
+    Browser browser(address_);
+    browser.send(
+        "GET /comm.cgi?comrdtbsiz=2 HTTP/1.1\r\n\r\n"
+        "GET /comm.cgi?comrdtbsiz=3 HTTP/1.1\r\n\r\n");
+    EXPECT_THAT(browser.rest(), ::testing::AllOf(HasSubstr("302"), HasSubstr("close")));
+    EXPECT_THAT(get("/netftapi2.xml"), HasSubstr("<comrdtbsiz>2</comrdtbsiz>"));
+}
+
+TEST_F(NetFtWeb, KeepsItsSettingsThroughARestartAndForgetsItsBias) {
+    get("/comm.cgi?comrdtrate=500&comrdtbsiz=2");
+    get("/setting.cgi?setbias0=100");
+    ASSERT_THAT(get("/netftapi2.xml"), HasSubstr("<setbias>100;0;0;0;0;0</setbias>"));
+    controller_.inTurn([](auto& controller, auto&) { controller.restart(); });
+    const auto page = get("/netftapi2.xml");
+    EXPECT_THAT(page, HasSubstr("<comrdtrate>500</comrdtrate>"));
+    EXPECT_THAT(page, HasSubstr("<comrdtbsiz>2</comrdtbsiz>"));
+    EXPECT_THAT(page, HasSubstr("<setbias>0;0;0;0;0;0</setbias>"));
+}
+
+TEST_F(NetFtWeb, TellsTheReadingThatIsStreamed) {
+    ASSERT_TRUE(controller_.inject("wrench", "5 0 0 0 0 0"));
+    ASSERT_TRUE(controller_.inject("status", "80000004"));
+    ASSERT_TRUE(controller_.waitUntil([](const auto& state) {
         return state["counts"][0] == 5'000'000 && state["status"] == "80000004";
     }));
-    const auto page = get("127.73.1.6", "/netftapi2.xml");
+    const auto page = get("/netftapi2.xml");
     EXPECT_THAT(page, HasSubstr("<runft>5000000;0;0;0;0;0</runft>"));
     EXPECT_THAT(page, HasSubstr("<runstat>0x80000004</runstat>"));
 }
 
-TEST(NetFtWeb, SetsRateAndBufferSize) {
-    RunningController controller(
-        virtual_controller::netftController(),
-        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.7"});
-    EXPECT_THAT(get("127.73.1.7", "/comm.cgi?comrdtrate=500&comrdtbsiz=2"), HasSubstr("302 Found"));
-    EXPECT_THAT(get("127.73.1.7", "/netftapi2.xml"), HasSubstr("<comrdtrate>500</comrdtrate>"));
-    Client client(controller, "127.73.1.7");
-    client.request(2);
-    const auto first = word(client.next(), 1);
-    EXPECT_EQ(word(client.next(), 1) - first, 14U) << "of 7000 samples per second";
-    client.request(0);
-    while (!client.next(30ms).empty()) {
+TEST_F(NetFtWeb, SetsRateAndBufferSize) {
+    EXPECT_THAT(get("/comm.cgi?comrdtrate=500&comrdtbsiz=2"), HasSubstr("302 Found"));
+    EXPECT_THAT(get("/netftapi2.xml"), HasSubstr("<comrdtrate>500</comrdtrate>"));
+    client_.request(2);
+    const auto first = word(client_.next(), 1);
+    EXPECT_EQ(word(client_.next(), 1) - first, 14U) << "of 7000 samples per second";
+    client_.request(0);
+    while (!client_.next(30ms).empty()) {
     }
-    client.request(3, 3);
-    EXPECT_EQ(client.next().size(), 2 * 36U);
-    EXPECT_EQ(client.next().size(), 36U);
+    client_.request(3, 3);
+    EXPECT_EQ(client_.next().size(), 2 * 36U);
+    EXPECT_EQ(client_.next().size(), 36U);
 }
 
-TEST(NetFtWeb, ClearsTheBias) {
-    RunningController controller(
-        virtual_controller::netftController(),
-        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.8"});
+TEST_F(NetFtWeb, ClearsTheBias) {
     const auto counts = [&](std::int32_t wanted) {
-        return controller.waitUntil(
+        return controller_.waitUntil(
             [wanted](const auto& state) { return state["counts"][0] == wanted; });
     };
-    ASSERT_TRUE(controller.inject("wrench", "5 0 0 0 0 0"));
+    ASSERT_TRUE(controller_.inject("wrench", "5 0 0 0 0 0"));
     ASSERT_TRUE(counts(5'000'000));
-    Client(controller, "127.73.1.8").request(0x42);
+    client_.request(0x42);
     ASSERT_TRUE(counts(0));
-    EXPECT_THAT(get("127.73.1.8", "/netftapi2.xml"),
-                HasSubstr("<setbias>2521;0;0;0;0;0</setbias>"));
-    EXPECT_THAT(get("127.73.1.8", "/setting.cgi?setbias0=0"), HasSubstr("302 Found"));
+    EXPECT_THAT(get("/netftapi2.xml"), HasSubstr("<setbias>2521;0;0;0;0;0</setbias>"));
+    EXPECT_THAT(get("/setting.cgi?setbias0=0"), HasSubstr("302 Found"));
     EXPECT_TRUE(counts(5'000'000));
 }
 
-TEST(NetFtWeb, EndsAndRefusesStreamsWhileRdtIsOff) {
-    RunningController controller(
-        virtual_controller::netftController(),
-        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.9"});
-    Client client(controller, "127.73.1.9");
-    client.request(2);
-    ASSERT_FALSE(client.next().empty());
-    EXPECT_THAT(get("127.73.1.9", "/comm.cgi?comrdte=0"), HasSubstr("302 Found"));
-    EXPECT_THAT(get("127.73.1.9", "/netftapi2.xml"), HasSubstr("<comrdte>Disabled</comrdte>"));
-    client.request(2);
-    while (!client.next(30ms).empty()) {
+TEST_F(NetFtWeb, EndsAndRefusesStreamsWhileRdtIsOff) {
+    client_.request(2);
+    ASSERT_FALSE(client_.next().empty());
+    EXPECT_THAT(get("/comm.cgi?comrdte=0"), HasSubstr("302 Found"));
+    EXPECT_THAT(get("/netftapi2.xml"), HasSubstr("<comrdte>Disabled</comrdte>"));
+    client_.request(2);
+    while (!client_.next(30ms).empty()) {
     }
-    EXPECT_EQ(controller.state()["client"], "");
-    get("127.73.1.9", "/comm.cgi?comrdte=1");
-    client.request(2);
-    EXPECT_FALSE(client.next().empty());
+    EXPECT_EQ(controller_.state()["client"], "");
+    get("/comm.cgi?comrdte=1");
+    client_.request(2);
+    EXPECT_FALSE(client_.next().empty());
 }
 
 }  // namespace
