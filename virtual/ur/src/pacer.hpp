@@ -5,6 +5,8 @@
 #include <chrono>
 #include <functional>
 
+#include "metier/virtual_controller/lifetime.hpp"
+
 namespace metier::virtual_ur {
 
 /// Calls a function once per period. Late calls are caught up evenly, four times as fast at most,
@@ -31,18 +33,17 @@ private:
             due_ = now;
         }
         timer_.expires_at(std::max(due_, now + period_ / 4));
-        timer_.async_wait([this](const asio::error_code& error) {
-            if (!error) {
-                cycle_();
-                wait();
-            }
-        });
+        timer_.async_wait(lifetime_.guard([this](const asio::error_code&) {
+            cycle_();
+            wait();
+        }));
     }
 
     asio::steady_timer timer_;
     const std::chrono::nanoseconds period_;
     std::chrono::steady_clock::time_point due_;
     std::function<void()> cycle_;
+    virtual_controller::Lifetime lifetime_;
 };
 
 }  // namespace metier::virtual_ur

@@ -21,7 +21,7 @@ struct RobotDescription {
     std::string build_date;  ///< such as "14-12-2020, 11:11:11"
     const motion::RobotModel* model = nullptr;
     Vector6 joint_acceleration{};  ///< most of each axis [rad/s2]
-    std::int32_t robot_type = 1;   ///< 1 UR5, 2 UR10, 3 UR3
+    std::int32_t robot_type = 1;   ///< docs/protocols/ur.md; 1: UR5
 };
 
 /// Package type 16 with all its parts.

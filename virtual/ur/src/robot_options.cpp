@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <vector>
 
@@ -19,21 +20,43 @@ constexpr double kJointAcceleration = 40.0;
 // A UR5 stops from 183 deg/s within 0.244 s (user manual) [rad/s2].
 constexpr double kStopDeceleration = 13.0;
 
+/// One size of the maker's arms.
+struct ArmSize {
+    int number;
+    std::int32_t type;  // in the configuration package; docs/protocols/ur.md
+    Series oldest;      // the first series that has it
+};
+constexpr ArmSize kUr5{5, 1, Series::cb3};
+constexpr std::array kArmSizes{kUr5,
+                               ArmSize{3, 3, Series::cb3},
+                               ArmSize{8, 6, Series::e_series},
+                               ArmSize{10, 2, Series::cb3},
+                               ArmSize{15, 9, Series::e_series},
+                               ArmSize{16, 4, Series::e_series},
+                               ArmSize{18, 5, Series::e_series},
+                               ArmSize{20, 7, Series::e_series},
+                               ArmSize{30, 8, Series::e_series}};
+
+/// Size of a model such as "ur10e". Without a known one in its name it counts as a UR5.
+ArmSize sizeOf(std::string_view model) {
+    const auto name = inUpperCase(model);
+    const auto* const named = std::ranges::find_if(kArmSizes, [&](const ArmSize& size) {
+        const auto text = fmt::format("UR{}", size.number);
+        const auto begin = name.find(text);
+        return begin != std::string::npos &&
+               name.find_first_of("0123456789", begin + text.size()) != begin + text.size();
+    });
+    return named == kArmSizes.end() ? kUr5 : *named;
+}
+
 Series readSeries(const Settings& settings, const motion::RobotModel& model) {
-    const bool e_series = model.name().ends_with("e");
+    const bool e_series =
+        model.name().ends_with("e") || sizeOf(model.name()).oldest == Series::e_series;
     const auto text = settings.textOr("series", e_series ? "e" : "cb3");
     if (text != "e" && text != "cb3") {
         settings.reject("series", "is neither \"cb3\" nor \"e\"");
     }
     return text == "e" ? Series::e_series : Series::cb3;
-}
-
-/// Type number of "ur5e" and the like: the number in the name is the size.
-std::int32_t robotType(std::string_view model) {
-    if (model.find("10") != std::string_view::npos) {
-        return 2;
-    }
-    return model.find('3') != std::string_view::npos ? 3 : 1;
 }
 
 ArmOptions readArm(const Settings& settings, const motion::RobotModel& model, Series series) {
@@ -67,7 +90,7 @@ RobotDescription describe(const motion::RobotModel& model, const ArmOptions& arm
         e_series ? ControllerVersion{5, 12, 6, 1102099} : ControllerVersion{3, 15, 8, 106339};
     description.build_date = e_series ? "23-03-2023, 12:00:00" : "12-10-2021, 12:00:00";
     description.model = &model;
-    description.robot_type = robotType(model.name());
+    description.robot_type = sizeOf(model.name()).type;
     for (std::size_t i = 0; i < kAxes; ++i) {
         description.joint_acceleration[i] = arm.limits[i].acceleration;
     }

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <memory>
 #include <vector>
 
 namespace metier::virtual_ur {
@@ -49,6 +50,18 @@ TEST(Pacer, LeavesOutWhatIsTooLongAgo) {
     context.run();
     // Caught up, they would take a quarter of that.
     EXPECT_GE(std::chrono::steady_clock::now() - late_until, 19 * 2ms);
+}
+
+TEST(Pacer, CallsNothingOnceItIsGone) {
+    asio::io_context context;
+    int calls = 0;
+    std::unique_ptr<Pacer> pacer;
+    asio::steady_timer earlier(context, Time{});  // due with it, and in front of it
+    earlier.async_wait([&](const asio::error_code&) { pacer.reset(); });
+    pacer = std::make_unique<Pacer>(context, 1ns, [&] { ++calls; });
+    context.run_for(10s);
+    EXPECT_FALSE(pacer);
+    EXPECT_EQ(calls, 0);
 }
 
 }  // namespace

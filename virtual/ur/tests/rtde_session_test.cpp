@@ -214,6 +214,37 @@ TEST_F(RtdeSessionTest, InputsOfAnotherSizeAreRefused) {
     EXPECT_EQ(state_.inputs.integers[0], 0);
 }
 
+TEST_F(RtdeSessionTest, AListOfNamesMayHave2048Bytes) {
+    const auto package = [](std::string_view list) {
+        const auto size = static_cast<int>(list.size()) + 3;
+        return bytes({size / 256, size % 256, 'O'}, list);
+    };
+    std::string names = "timestamp";
+    for (int i = 0; i < 203; ++i) {
+        names += ",timestamp";
+    }
+    ASSERT_EQ(names.size(), 2039U);
+    names += ",payload";
+    EXPECT_EQ(answer(package(names)).size(), 3 + 204 * 7 + 6U);
+    names += ',';
+    ASSERT_EQ(names.size(), 2048U);
+    answer(package(names));
+    EXPECT_EQ(answer(bytes({0, 3, 'S'})), bytes({0, 4, 'S', 1}));
+    names.insert(0, "robot_mode,");
+    answer(package(names));
+    EXPECT_EQ(answer(bytes({0, 3, 'S'})), bytes({0, 4, 'S', 0}));
+}
+
+TEST_F(RtdeSessionTest, AClientMayHave255InputRecipes) {
+    const auto setUp = bytes({0, 27, 'I'}, "input_double_register_24");
+    for (int id = 1; id <= 255; ++id) {
+        ASSERT_EQ(answer(setUp), bytes({0, 10, 'I', id}, "DOUBLE"));
+    }
+    EXPECT_EQ(answer(setUp), bytes({0, 10, 'I', 0}, "DOUBLE"));
+    answer(bytes({0, 12, 'U', 255, 0x40, 0x45, 0, 0, 0, 0, 0, 0}));
+    EXPECT_THAT(written_, ElementsAre("input_double_register_24"));
+}
+
 TEST_F(RtdeSessionTest, PackagesMayComeInPartsAndSeveralAtOnce) {
     ASSERT_TRUE(send(session_, bytes({0, 5, 'V'})));
     ASSERT_TRUE(send(session_, bytes({0})));
