@@ -7,6 +7,8 @@
 #include <initializer_list>
 #include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "iiwa_model.hpp"
 #include "metier/link/tcp_link.hpp"
@@ -179,6 +181,34 @@ TEST_F(IiwaTest, TakesCommandsThatWaitOneByOne) {
     EXPECT_EQ(pc_.state[34], -11.0F);
 }
 
+TEST_F(IiwaTest, EndsOnMoreBytesThanItKeepsWhileItIsBusy) {
+    auto controller = cabinet();
+    pc_.accept();
+    EXPECT_EQ(pc_.command({201, 0.02F}), 1.0F);
+    EXPECT_EQ(pc_.command({305, 52}), 1.0F);
+    pc_.send({102, 1.0F, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN});
+    const auto moves = [](const auto& state) { return state["moving"] == true; };
+    ASSERT_TRUE(controller.waitUntil(moves));
+    pc_.sendRaw(std::vector<std::byte>(65'536));
+    EXPECT_TRUE(controller.waitUntil(moves));
+    pc_.sendRaw(std::array<std::byte, 1>{});
+    EXPECT_TRUE(pc_.closed());
+    EXPECT_TRUE(controller.waitUntil([](const auto& state) { return state["moving"] == false; }));
+}
+
+TEST_F(IiwaTest, AnswersASynchronousMoveThatTheEmergencyStopEnded) {
+    auto controller = cabinet();
+    pc_.accept();
+    EXPECT_EQ(pc_.command({305, 52}), 1.0F);
+    pc_.send({102, 1.0F, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN});
+    ASSERT_TRUE(controller.waitUntil([](const auto& state) { return state["moving"] == true; }));
+    ASSERT_TRUE(controller.inject("emergency-stop"));
+    ASSERT_TRUE(pc_.receive());
+    EXPECT_EQ(pc_.state[0], 0.0F);
+    EXPECT_EQ(pc_.state[34], -13.0F);
+    EXPECT_EQ(pc_.state[36], 0.0F);
+}
+
 TEST_F(IiwaTest, EndsOnANegativeNumberAndOnAWrongJoint) {
     auto controller = cabinet();
     pc_.accept();
@@ -311,6 +341,38 @@ TEST_F(IiwaTest, SpeaksDoublePrecision) {
 
 TEST_F(IiwaTest, NeedsAModel) {
     EXPECT_THROW(RunningController(virtual_controller::iiwaController(), {}), std::runtime_error);
+}
+
+TEST_F(IiwaTest, MeasuresWithTheNoiseItIsGiven) {
+    auto controller = cabinet({{"force_noise", 2.0}, {"answer_delay", 0.0}});
+    pc_.accept();
+    double squares = 0.0;
+    constexpr int kSamples = 300;
+    for (int i = 0; i < kSamples; ++i) {
+        ASSERT_EQ(pc_.command({0}), 0.0F);
+        squares += static_cast<double>(pc_.state[30]) * static_cast<double>(pc_.state[30]);
+        EXPECT_EQ(pc_.state[31], 0.0F) << "the torque has none";
+    }
+    EXPECT_GT(std::sqrt(squares / kSamples), 0.5);
+    EXPECT_LT(std::sqrt(squares / kSamples), 8.0);
+}
+
+TEST_F(IiwaTest, RefusesSettingsThatAreWrong) {
+    const std::vector<double> home(iiwaModel().home().begin(), iiwaModel().home().end());
+    auto beyond = home;
+    beyond[3] = 9.0;
+    const auto six = std::vector<double>(6, 0.0);
+    for (const auto& [name, value] :
+         std::initializer_list<std::pair<const char*, cell::Settings::Value>>{
+             {"start_position", beyond},
+             {"start_position", six},
+             {"answer_delay", 1.1},
+             {"redial_delay", 0.0},
+             {"pc_address", std::string("the pc")},
+             {"pc_prot", 1.0}}) {
+        EXPECT_THROW(cabinet({{name, value}}), std::runtime_error) << name;
+    }
+    EXPECT_NO_THROW(cabinet({{"start_position", home}, {"answer_delay", 1.0}}));
 }
 
 TEST_F(IiwaTest, RefusesInjectionsThatItDoesNotKnow) {
