@@ -15,7 +15,7 @@ std::filesystem::path variable(const char* name) {
 }
 
 std::filesystem::path folder(const char* name, const char* below_home) {
-    if (const auto named = variable(name); !named.empty()) {
+    if (const auto named = variable(name); named.is_absolute()) {
         return named / "metier";
     }
     const auto home = variable("HOME");

@@ -1,5 +1,6 @@
 #include "host/device_opening.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -19,6 +20,11 @@ Result<device::OpenDevice> open(const DriverChoice& choice) {
     static const std::string kName = "hand";
     static const auto kDrivers = fakeDrivers();
     return openDevice(choice, {kName, kDrivers});
+}
+
+/// A port that no test of another process uses.
+int ownPort(int number) {
+    return 10'000 + getpid() % 10'000 * 5 + number;
 }
 
 DriverChoice locked(double port, const std::string& controller = "127.0.0.1") {
@@ -53,24 +59,25 @@ TEST(Device, IsRefusedWithSettingsThatItsDriverDoesNotKnow) {
 }
 
 TEST(Device, IsHadByOneServerAtATime) {
-    auto first = open(locked(7123));
+    auto first = open(locked(ownPort(0)));
     ASSERT_TRUE(first) << first.error().message;
-    const auto second = open(locked(7123));
+    const auto second = open(locked(ownPort(0)));
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, Errc::already_exists);
     EXPECT_THAT(second.error().message,
-                AllOf(HasSubstr("hand: the controller locked at 127.0.0.1, port 7123"),
+                AllOf(HasSubstr(fmt::format("hand: the controller locked at 127.0.0.1, port {}",
+                                            ownPort(0))),
                       HasSubstr(std::to_string(getpid()))));
-    EXPECT_TRUE(open(locked(7124))) << "another device behind the same address";
+    EXPECT_TRUE(open(locked(ownPort(1)))) << "another device behind the same address";
     first->owner.reset();
-    EXPECT_TRUE(open(locked(7123)));
+    EXPECT_TRUE(open(locked(ownPort(0))));
 }
 
 TEST(Device, IsTheSameByEachNameOfItsHost) {
-    const auto first = open(locked(7125, "localhost"));
+    const auto first = open(locked(ownPort(2), "localhost"));
     ASSERT_TRUE(first) << first.error().message;
-    const auto second = open(locked(7125, "127.0.0.1"));
-    const auto third = open(locked(7125, "::1"));
+    const auto second = open(locked(ownPort(2), "127.0.0.1"));
+    const auto third = open(locked(ownPort(2), "::1"));
     EXPECT_TRUE(!second || !third) << "localhost is one of the two";
 }
 
@@ -103,6 +110,35 @@ TEST(Device, IsWaitedForUntilItsControllerAnswers) {
     });
     awaitConnection(*device);
     EXPECT_EQ(gripper->safety().state, device::SafetyState::normal);
+}
+
+/// A sensor that becomes ready while it is asked for its state.
+class SlowlySpeakingSensor final : public device::ForceTorqueSensor {
+public:
+    const std::string& name() const noexcept override { return name_; }
+    device::WrenchSample sample() const noexcept override { return {}; }
+    device::Safety safety() const override {
+        callback_({});
+        return {device::SafetyState::disconnected, "no answer yet", false};
+    }
+    Result<void> tare() override { return {}; }
+    device::Registration onSafetyChange(SafetyCallback callback) override {
+        callback_ = std::move(callback);
+        return {};
+    }
+
+private:
+    const std::string name_ = "slow";
+    SafetyCallback callback_;
+};
+
+TEST(Device, IsNotWaitedForIfItBecomesReadyWhileItIsAsked) {
+    SlowlySpeakingSensor sensor;
+    device::OpenDevice device;
+    device.force_torque_sensor = &sensor;
+    const auto begun = std::chrono::steady_clock::now();
+    awaitConnection(device);
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(9));
 }
 
 }  // namespace

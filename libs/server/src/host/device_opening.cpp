@@ -109,7 +109,7 @@ void awaitConnection(const device::OpenDevice& device) {
     struct Seen {
         std::mutex mutex;
         std::condition_variable changed;
-        SafetyState state = SafetyState::disconnected;
+        std::optional<SafetyState> state;
     };
     // Shared with a callback that may still run when this function has returned.
     const auto seen = std::make_shared<Seen>();
@@ -122,12 +122,12 @@ void awaitConnection(const device::OpenDevice& device) {
         withAnInterface(device, [&](auto& part) { return part.onSafetyChange(note); });
     const auto waitFor = [&](std::chrono::milliseconds longest, auto reached) {
         std::unique_lock lock(seen->mutex);
-        return seen->changed.wait_for(lock, longest, [&] { return reached(seen->state); });
+        return seen->changed.wait_for(lock, longest, [&] { return reached(*seen->state); });
     };
     {
         const auto now = safetyOf(device).state;
         const std::lock_guard lock(seen->mutex);
-        seen->state = now;
+        seen->state = seen->state.value_or(now);  // a change is newer
     }
     if (!waitFor(kFirstAnswer, [](auto state) { return state != SafetyState::disconnected; }) ||
         !waitFor(kSettling, [](auto state) { return state == SafetyState::normal; })) {
