@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
+#include "metier/device/force_torque_sensor.hpp"
 #include "recording_bench.hpp"
 
 namespace metier::records {
@@ -9,6 +12,25 @@ namespace {
 
 using testing::PlacedArm;
 using testing::RecordedFile;
+
+/// A sensor that measures what the test says.
+class PlacedSensor final : public device::ForceTorqueSensor {
+public:
+    /// \param force along z [N]
+    void measure(double force, device::SafetyState health = device::SafetyState::normal) {
+        sample_.write({.force = {0.0, 0.0, force}, .health = health});
+    }
+
+    const std::string& name() const noexcept override { return name_; }
+    device::WrenchSample sample() const noexcept override { return sample_.read(); }
+    device::Safety safety() const override { return {}; }
+    Result<void> tare() override { return {}; }
+    device::Registration onSafetyChange(SafetyCallback /*callback*/) override { return {}; }
+
+private:
+    std::string name_ = "placed";
+    device::SharedValue<device::WrenchSample> sample_;
+};
 
 struct SampledArm : ::testing::Test {
     Recorder::Key begin(const char* id) {
@@ -37,7 +59,8 @@ struct SampledArm : ::testing::Test {
 
     RecordedFile file;
     PlacedArm arm;
-    PathSampler sampler{arm, nullptr, file.recorder()};
+    PlacedSensor sensor;
+    PathSampler sampler{arm, &sensor, file.recorder()};
 };
 
 TEST_F(SampledArm, IsRecordedAtTheBeginAndTheEnd) {
@@ -92,6 +115,48 @@ TEST_F(SampledArm, IsRecordedForEachExecution) {
     end(other);
     EXPECT_EQ(path("one").back().actual[0], 1.0);
     EXPECT_EQ(path("other").back().actual[0], 2.0);
+}
+
+TEST_F(SampledArm, IsRecordedWhenOnlyTheForceChanges) {
+    sensor.measure(0.0);
+    const auto key = begin("a");
+    sensor.measure(0.4);  // noise
+    arm.awaitReads(3);
+    sensor.measure(5.0);
+    arm.awaitReads(2);
+    sensor.measure(0.0);
+    arm.awaitReads(2);
+    end(key);
+    std::vector<double> forces;
+    for (const auto& sample : path("a")) {
+        ASSERT_EQ(sample.force.size(), 6U);
+        if (forces.empty() || forces.back() != sample.force[2]) {
+            forces.push_back(sample.force[2]);
+        }
+    }
+    EXPECT_THAT(forces, ::testing::ElementsAre(0.0, 0.4, 5.0, 0.0)) << "0.4: the end of the pause";
+}
+
+TEST_F(SampledArm, HasNoForceWhileItsSensorIsNotWell) {
+    sensor.measure(7.0, device::SafetyState::disconnected);
+    const auto key = begin("a");
+    sensor.measure(7.0);
+    arm.awaitReads(2);
+    sensor.measure(7.0, device::SafetyState::fault);
+    arm.awaitReads(2);
+    end(key);
+    const auto samples = path("a");
+    EXPECT_TRUE(samples.front().force.empty());
+    EXPECT_TRUE(std::any_of(samples.begin(), samples.end(),
+                            [](const auto& sample) { return !sample.force.empty(); }));
+    EXPECT_TRUE(samples.back().force.empty());
+}
+
+TEST_F(SampledArm, CountsNoMissedCyclesIfItsCounterBeganAnew) {
+    arm.place({0.0, 0.0}, {0.0, 0.0}, 100);
+    const auto key = begin("a");
+    arm.place({0.0, 0.0}, {0.0, 0.0}, 3);
+    EXPECT_EQ(end(key), 0U);
 }
 
 TEST_F(SampledArm, IsNotReadWhileNothingRuns) {

@@ -1,9 +1,7 @@
 // Content of a store and how it is found, the same in both databases.
 #include "metier/records/store.hpp"
 
-#include "either_database.hpp"
-#include "recorded.hpp"
-#include "retention.hpp"
+#include "either_store.hpp"
 
 namespace metier::records {
 namespace {
@@ -12,43 +10,6 @@ using namespace std::chrono_literals;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-class EitherStore : public EitherDatabase {
-protected:
-    std::unique_ptr<Store> store() const {
-        auto opened = Store::open(url_);
-        if (!opened) {
-            throw std::runtime_error(opened.error().message);
-        }
-        return std::move(*opened);
-    }
-    /// Executions of two servers; "a" to "f" start one after another, one a second.
-    void recordSix() const {
-        const auto ur5 = recorderOf(url_);
-        const auto edo = recorderOf(url_, "urn:test:edo");
-        int second = 0;
-        for (const auto* id : {"a", "b", "c", "d", "e", "f"}) {
-            auto execution = moveOf(id, at(1'000 * second));
-            const bool even = second++ % 2 == 0;
-            execution.skill = even ? "JointPtpMoveSkill" : "CartesianLinearMoveSkill";
-            execution.user = second > 3 ? "ben" : "anna";
-            execution.server_name = even ? "ur5" : "edo";
-            recordOne(even ? *ur5 : *edo, execution,
-                      second == 3 ? halted(at(9'000), "axis 2: 3.5 rad/s over limit 3.1 rad/s")
-                                  : finished(at(9'000)));
-            ASSERT_TRUE((even ? *ur5 : *edo).flush(soon()));
-        }
-    }
-    std::vector<std::string> ids(const Filter& filter, const Page& page = {}) const {
-        const auto listing = store()->list(filter, page);
-        EXPECT_TRUE(listing) << listing.error().message;
-        std::vector<std::string> result;
-        for (const auto& execution : listing->executions) {
-            result.push_back(execution.id);
-        }
-        return result;
-    }
-};
 
 INSTANTIATE_EITHER(EitherStore);
 
@@ -123,6 +84,65 @@ TEST_P(EitherStore, ListsTheNewestFirstByPages) {
     EXPECT_EQ(second.executions[0].id, "b");
     EXPECT_FALSE(second.more);
     EXPECT_THAT(reading->list({}, {.before = 77, .count = 4})->executions, IsEmpty());
+}
+
+TEST_P(EitherStore, ListsOneExecutionAtLeastAndThoseOfOneMomentByTheirNumber) {
+    const auto recorder = recorderOf(url_);
+    for (const auto* id : {"a", "b", "c"}) {
+        recordOne(*recorder, moveOf(id), finished(at(1)));
+        ASSERT_TRUE(recorder->flush(soon()));
+    }
+    EXPECT_THAT(ids({}, {.before = 0, .count = 0}), ElementsAre("c"));
+    const auto before = store()->find("c")->number;
+    EXPECT_THAT(ids({}, {.before = before, .count = 1}), ElementsAre("b"));
+    EXPECT_THAT(ids({}, {.before = before, .count = 4'000'000'000}), ElementsAre("b", "a"));
+}
+
+TEST_P(EitherStore, FindsTheNewestOfAnIdAndANumberBeforeAnId) {
+    const auto recorder = recorderOf(url_);
+    for (const auto& [id, start] : {std::pair("twice", 0), {"twice", 2'000}, {"1", 3'000}}) {
+        recordOne(*recorder, moveOf(id, at(start)), finished(at(start + 1)));
+        ASSERT_TRUE(recorder->flush(soon()));
+    }
+    const auto reading = store();
+    EXPECT_EQ(reading->find("twice")->started, at(2'000));
+    EXPECT_EQ(reading->find("1")->number, 1) << "not the execution with that id";
+    for (const auto* nobody : {"", "-1", "99", "99999999999999999999", "1 ", "twic"}) {
+        EXPECT_EQ(reading->find(nobody).error().code, Errc::not_found) << nobody;
+    }
+}
+
+TEST_P(EitherStore, HasNothingOfANumberThatNobodyHas) {
+    recordSix();
+    const auto reading = store();
+    for (const std::int64_t number : {0, -1, 99}) {
+        EXPECT_THAT(reading->children(number).value(), IsEmpty()) << number;
+        EXPECT_THAT(reading->transitions(number).value(), IsEmpty()) << number;
+        EXPECT_THAT(reading->intermediates(number).value(), IsEmpty()) << number;
+        EXPECT_THAT(reading->path(number).value(), IsEmpty()) << number;
+    }
+}
+
+TEST_P(EitherStore, FindsTheNewestOfMoreKindsThanOneStatementTakes) {
+    constexpr int kSkills = 250;
+    const auto recorder = recorderOf(url_);
+    for (int i = 0; i < kSkills; ++i) {
+        auto execution = moveOf("m-" + std::to_string(i), at(i * 7 % kSkills));
+        execution.skill = "Skill" + std::to_string(i);
+        recordOne(*recorder, execution, finished(at(1'000)));
+    }
+    ASSERT_TRUE(recorder->flush(soon()));
+    Filter filter;
+    filter.user = "anna";
+    const auto all = store()->list(filter, {.before = 0, .count = 1'000}).value();
+    ASSERT_EQ(all.executions.size(), kSkills + 0U);
+    for (std::size_t i = 0; i < all.executions.size(); ++i) {
+        ASSERT_EQ(all.executions[i].started, at(kSkills - 1 - static_cast<int>(i)));
+    }
+    filter.user.clear();
+    filter.text = "skill";
+    EXPECT_EQ(store()->list(filter, {.before = 0, .count = 200})->executions.back().started,
+              at(kSkills - 200));
 }
 
 TEST_P(EitherStore, FiltersByEachFieldAndAllTogether) {
@@ -298,74 +318,6 @@ TEST_P(EitherStore, TakesAnyBytesAsNames) {
     EXPECT_EQ(found.skill.size(), 300U);
     EXPECT_EQ(found.reason_text.size(), 2'000U);
     EXPECT_LE(found.parameters.size(), 1'000'000U);
-}
-
-TEST_P(EitherStore, ClosesWhatADeadServerLeftUnderWayAsLost) {
-    const auto other = recorderOf(url_, "urn:test:edo");
-    other->begin(moveOf("e-1"));
-    {
-        const auto died = recorderOf(url_);
-        const auto key = died->begin(moveOf("m-1"));
-        died->sample(key, sampleAt(2.5, 0.1));
-        ASSERT_TRUE(died->flush(soon()) && other->flush(soon()));
-    }
-    ASSERT_FALSE(store()->find("m-1")->isOver());
-    const auto back = recorderOf(url_);
-    ASSERT_TRUE(back->flush(soon()));
-    const auto lost = store()->find("m-1").value();
-    EXPECT_EQ(lost.state, kLost);
-    EXPECT_EQ(lost.reason, kServerLost);
-    EXPECT_EQ(lost.ended, at(2'500));
-    EXPECT_THAT(lost.reason_text, HasSubstr("server ended"));
-    EXPECT_FALSE(store()->find("e-1")->isOver());
-}
-
-/// \return number of removed executions
-Result<std::uint64_t> retain(const std::string& url, const Retention& keep, UtcTime now) {
-    METIER_ASSIGN(const auto database, openDatabase(url, Store::Access::write));
-    RetentionRun run(keep, now);
-    while (true) {
-        METIER_ASSIGN(const auto more, run.step(*database));
-        if (!more) {
-            return run.removed();
-        }
-    }
-}
-
-TEST_P(EitherStore, RemovesWhatIsOlderThanWanted) {
-    recordSix();
-    const auto removed = retain(url_, {.age = 1h, .bytes = 0}, at(2'500) + 1h);
-    ASSERT_TRUE(removed) << removed.error().message;
-    EXPECT_EQ(*removed, 3U);
-    EXPECT_THAT(ids({}), ElementsAre("f", "e", "d"));
-    EXPECT_THAT(store()->path(1).value(), IsEmpty());
-    Filter gone;
-    gone.text = "over limit";
-    EXPECT_THAT(ids(gone), IsEmpty());
-}
-
-TEST_P(EitherStore, RemovesTheOldestBeyondItsSizeButNothingUnderWay) {
-    constexpr int kExecutions = 1'200;
-    const auto recorder = recorderOf(url_);
-    recorder->begin(moveOf("under way", at(-1)));
-    for (int i = 0; i < kExecutions; ++i) {
-        auto large = moveOf("m-" + std::to_string(i), at(i));
-        large.parameters = '"' + std::string(1'000, 'p') + '"';
-        recordOne(*recorder, large, finished(at(i + 1)));
-        if (i % 100 == 99) {
-            ASSERT_TRUE(recorder->flush(soon()));
-        }
-    }
-    const auto reading = store();
-    const auto full = reading->bytes().value();
-    const auto removed = retain(url_, {.age = 0h, .bytes = full / 2}, at(0));
-    ASSERT_TRUE(removed) << removed.error().message;
-    EXPECT_GT(*removed, 400U);
-    EXPECT_LT(*removed, 900U);
-    EXPECT_LE(reading->bytes().value(), full / 2);
-    EXPECT_TRUE(reading->find("under way"));
-    EXPECT_TRUE(reading->find("m-" + std::to_string(kExecutions - 1)));
-    EXPECT_FALSE(reading->find("m-0"));
 }
 
 TEST_P(EitherStore, IsNotThereUntilSomebodyRecords) {

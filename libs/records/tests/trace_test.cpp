@@ -1,7 +1,9 @@
 // An execution as JSON and as a trace.
 #include "metier/records/trace.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "metier/records/json.hpp"
 #include "recorded.hpp"
@@ -112,6 +114,80 @@ TEST_F(TracedPick, HasAllDetailsInItsJson) {
     EXPECT_EQ(path.at(0).at("time"), 0.25);
     EXPECT_EQ(path.at(0).at("actual").at(1), -0.5);
     EXPECT_FALSE(path.at(0).contains("force"));
+}
+
+/// Trace of an execution of a store that two servers wrote.
+json traceOf(const std::string& file, const std::string& id) {
+    const auto store = Store::open(file).value();
+    return json::parse(chromeTrace(*store, store->find(id)->number).value()).at("traceEvents");
+}
+
+const json* sliceOf(const json& events, const std::string& category) {
+    const auto found = std::find_if(events.begin(), events.end(), [&](const json& event) {
+        return event.at("ph") == "X" && event.at("cat") == category;
+    });
+    return found == events.end() ? nullptr : &*found;
+}
+
+TEST(Trace, OfAnExecutionUnderWayEndsWithItsLastEvent) {
+    const auto file = (testFolder() / "records.db").string();
+    const auto recorder = recorderOf(file);
+    const auto key = recorder->begin(moveOf("m-1"));
+    recorder->transition(key, transition(0, "Ready", "Running", "approach"));
+    recorder->intermediate(key, {.time = at(700), .value = "1"});
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto events = traceOf(file, "m-1");
+    for (const auto* category : {"execution", "state", "step"}) {
+        const auto* slice = sliceOf(events, category);
+        ASSERT_NE(slice, nullptr) << category;
+        EXPECT_EQ(slice->at("dur"), 700'000) << category;
+    }
+}
+
+TEST(Trace, OfAnExecutionWithoutEventsHasNoLength) {
+    const auto file = (testFolder() / "records.db").string();
+    const auto recorder = recorderOf(file);
+    recorder->begin(moveOf("m-1"));
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto events = traceOf(file, "m-1");
+    EXPECT_EQ(sliceOf(events, "execution")->at("dur"), 0);
+    EXPECT_EQ(sliceOf(events, "state"), nullptr);
+}
+
+TEST(Trace, HasEventsBeforeTheStartAndAfterTheEndWithinTheExecution) {
+    const auto file = (testFolder() / "records.db").string();
+    const auto recorder = recorderOf(file);
+    const auto key = recorder->begin(moveOf("m-1"));
+    recorder->transition(key, transition(-5'000, "Ready", "Running", ""));  // the clock was set
+    recorder->transition(key, transition(9'000, "Running", "Ready", ""));
+    recorder->end(key, finished(at(1'000)));
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto events = traceOf(file, "m-1");
+    EXPECT_EQ(sliceOf(events, "state")->at("ts"), 0);
+    EXPECT_EQ(sliceOf(events, "state")->at("dur"), 1'000'000);
+}
+
+TEST(Trace, OfExecutionsThatStartedEachOtherHasEachOnce) {
+    const auto file = (testFolder() / "records.db").string();
+    const auto recorder = recorderOf(file);
+    for (const auto& [id, parent] : {std::pair("one", "other"), {"other", "one"}}) {
+        auto execution = moveOf(id);
+        execution.parent = parent;
+        recordOne(*recorder, execution, finished(at(1)));
+    }
+    ASSERT_TRUE(recorder->flush(soon()));
+    int slices = 0;
+    for (const auto& event : traceOf(file, "one")) {
+        slices += event.at("ph") == "X" ? 1 : 0;
+    }
+    EXPECT_EQ(slices, 2);
+}
+
+TEST(TimeText, IsCutToMilliseconds) {
+    using namespace std::chrono_literals;
+    EXPECT_EQ(timeText(at(0) + 999'999us), "2026-11-22T00:00:00.999Z");
+    EXPECT_EQ(timeText(UtcTime(-1us)), "1969-12-31T23:59:59.999Z");
+    EXPECT_EQ(timeText(UtcTime{}), "") << "not there yet";
 }
 
 TEST(RecordJson, HasEveryMemberInTheSameOrderAsEver) {
