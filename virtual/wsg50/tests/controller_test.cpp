@@ -184,6 +184,43 @@ TEST_F(WsgController, LosesAPartThatSlipsOut) {
         [](const auto& state) { return state["grasping_state"] == "part lost"; }));
 }
 
+TEST_F(WsgController, LosesAPartUntilThereIsAnotherOne) {
+    controller_.setEffect({.wrench = {}, .part_width = 0.040});
+    Client client(controller_);
+    client.command(0x20, PayloadWriter().u8(0));
+    ASSERT_EQ(client.awaitReply(0x20), 0);
+    const auto graspsAPart = [&client] {
+        client.command(0x25, floats(40, 400));
+        return client.awaitReply(0x25) == 0;
+    };
+    ASSERT_TRUE(controller_.inject("lost-part"));
+    EXPECT_FALSE(graspsAPart()) << "the world still has the part that slipped out";
+    client.command(0x26, floats(110, 400));
+    EXPECT_EQ(client.awaitReply(0x26), 0);
+    ASSERT_TRUE(controller_.inject("part", "41"));
+    EXPECT_TRUE(graspsAPart());
+}
+
+TEST_F(WsgController, SendsItsNextClientNoUpdatesThatTheOneBeforeAskedFor) {
+    {
+        Client client(controller_);
+        EXPECT_EQ(client.command(0x43, update(1, 2)), 0);
+        EXPECT_EQ(client.command(0x07), 0);
+    }
+    ASSERT_TRUE(controller_.waitUntil([](const auto& state) { return state["client"] == ""; }));
+    Client next(controller_);
+    EXPECT_FALSE(next.next(30ms));
+}
+
+TEST_F(WsgController, KeepsATagOf64BytesAndRefusesALongerOne) {
+    Client client(controller_);
+    const std::string tag(64, 't');
+    EXPECT_EQ(client.command(0x51, PayloadWriter().text(tag)), 0);
+    EXPECT_EQ(client.command(0x51, PayloadWriter().text(tag + 't')), 12);
+    EXPECT_EQ(client.command(0x52), 0);
+    EXPECT_EQ(client.payload.size(), 2 + 64U);
+}
+
 TEST_F(WsgController, IsBlockedWhereItIsToldTo) {
     ASSERT_TRUE(controller_.inject("block", "70"));
     Client client(controller_);
@@ -206,6 +243,17 @@ TEST_F(WsgController, RefusesInjectionsThatItDoesNotKnow) {
     EXPECT_EQ(controller_.inject("earthquake").error().code, Errc::not_found);
     EXPECT_EQ(controller_.inject("part", "wide").error().code, Errc::invalid_argument);
     EXPECT_EQ(controller_.inject("block", "111").error().code, Errc::invalid_argument);
+}
+
+TEST(WsgControllerStart, IsCalmWhenItsClientGoesIfItIsSetSo) {
+    RunningController controller(virtual_controller::wsg50Controller(),
+                                 {.settings = {{"port", 0.0}, {"fast_stop_on_disconnect", false}}});
+    {
+        Client client(controller);
+        EXPECT_EQ(client.command(0x06), 0);
+    }
+    EXPECT_TRUE(controller.waitUntil([](const auto& state) { return state["client"] == ""; }));
+    EXPECT_EQ(controller.state()["fault"], false);
 }
 
 TEST(WsgControllerStart, RefusesSettingsThatItDoesNotKnow) {
