@@ -284,6 +284,37 @@ TEST(Machine, ChecksItsBrakes) {
     EXPECT_EQ(rig.client.last("/brakes_check_ack"), Json({{"state", 1}, {"mask", 7}}));
 }
 
+TEST(Machine, BrakesByAFollowingErrorAndAtTheEndOfAStrokeUntilAReset) {
+    for (const auto* fault : {"following-error", "limit"}) {
+        Rig rig;
+        rig.moveJoints({30.0});
+        rig.runSeconds(0.3);
+        ASSERT_TRUE(rig.inject(fault, "6"));
+        EXPECT_TRUE(rig.runUntilState(static_cast<int>(MachineState::braked))) << fault;
+        rig.runSeconds(1.0);
+        const double stopped = rig.joint(0);
+        rig.runSeconds(1.0);
+        EXPECT_EQ(rig.joint(0), stopped) << fault;
+        EXPECT_LT(stopped, 29.0) << fault;
+    }
+}
+
+TEST(Machine, TakesInjectionsUpToTheirLimits) {
+    Rig rig;
+    for (const auto& [name, most] :
+         {std::pair("limit", 6), {"joint-silent", 7}, {"drop-next", 1'000'000}}) {
+        EXPECT_TRUE(rig.inject(name, std::to_string(most))) << name;
+        for (const auto& value :
+             {std::to_string(most + 1), std::string("-1"), std::string(), std::string("1.5")}) {
+            EXPECT_EQ(rig.inject(name, value).error().code, Errc::invalid_argument)
+                << name << ' ' << value;
+        }
+    }
+    EXPECT_FALSE(rig.inject("limit", "0"));
+    EXPECT_FALSE(rig.inject("drop-next", "0"));
+    EXPECT_TRUE(rig.inject("joint-silent", "0"));
+}
+
 TEST(Machine, RefusesInjectionsItDoesNotKnow) {
     Rig rig;
     EXPECT_EQ(rig.inject("fire").error().code, Errc::not_found);
