@@ -110,8 +110,12 @@ function(metier_add_test name)
     # Fixtures of two files may have one name.
     set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
     metier_use_precompiled_headers(${name} REUSE_FROM metier_test_headers)
+    # That of ::testing::TempDir(): two builds may be tested side by side.
+    set(folder ${CMAKE_CURRENT_BINARY_DIR}/${name}.tmp/)
+    file(MAKE_DIRECTORY ${folder})
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
-        PROPERTIES TIMEOUT ${arg_TIMEOUT} RUN_SERIAL ${arg_ALONE} LABELS "${arg_LABELS}")
+        PROPERTIES ENVIRONMENT TEST_TMPDIR=${folder}
+            TIMEOUT ${arg_TIMEOUT} RUN_SERIAL ${arg_ALONE} LABELS "${arg_LABELS}")
 endfunction()
 
 # metier_add_benchmark(<name> SOURCES ... LIBRARIES ...): a program of the target `benchmarks`.

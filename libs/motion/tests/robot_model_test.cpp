@@ -26,7 +26,7 @@ std::string fileText(const std::string& robot) {
 Error errorAfter(const std::string& from, const std::string& to) {
     std::string text = fileText("ur5");
     text.replace(text.find(from), from.size(), to);
-    const auto path = std::filesystem::temp_directory_path() /
+    const auto path = std::filesystem::path(testing::TempDir()) /
                       (std::string("metier_") +
                        testing::UnitTest::GetInstance()->current_test_info()->name() + ".toml");
     std::ofstream(path) << text;
