@@ -8,20 +8,9 @@
 // that, and nothing here needs it.
 'use strict';
 
-const net = require('node:net');
 const path = require('node:path');
 const { MessageSecurityMode, OPCUACertificateManager, OPCUADiscoveryServer, SecurityPolicy } = require('node-opcua');
-
-/** A TCP port that nobody listens on at this moment; node-opcua takes 0 for 4840. */
-function freePort() {
-  return new Promise((resolve, reject) => {
-    const probe = net.createServer().once('error', reject);
-    probe.listen(0, '127.0.0.1', () => {
-      const { port } = probe.address();
-      probe.close(() => resolve(port));
-    });
-  });
-}
+const { freePort } = require('./free_port');
 
 async function main() {
   const [directory, given = '0'] = process.argv.slice(2);

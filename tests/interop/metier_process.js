@@ -62,16 +62,17 @@ function startServer(args, security = kLab) {
 /**
  * @param {string[]} args of a metier command that ends by itself
  * @param {string[]} security options of metier on security
- * @returns {Promise<{status: number, output: string}>} what it printed and its exit status
+ * @returns {Promise<{status: number, output: string, errors: string}>} its exit status and what it
+ *     printed
  */
 function runMetier(args, security = kLab) {
   return new Promise((resolve, reject) => {
-    execFile(metierProgram(), [...security, ...args], { timeout: kRunTimeoutMs }, (error, output) => {
+    execFile(metierProgram(), [...security, ...args], { timeout: kRunTimeoutMs }, (error, output, errors) => {
       if (error && typeof error.code !== 'number') {
         reject(error);
         return;
       }
-      resolve({ status: error ? error.code : 0, output });
+      resolve({ status: error ? error.code : 0, output, errors });
     });
   });
 }

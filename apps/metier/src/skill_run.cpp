@@ -48,6 +48,11 @@ private:
 
     static void halt(opcua::Client& client, const client::SkillAddress& skill) {
         const auto method = client.translate(skill.node, {{0, "Halt"}});
+        if (!method && method.error().status == opcua::status::kBadNoMatch) {
+            fmt::print(stderr, "metier: {} has no Halt: it goes on\n", printable(skill.name));
+            client.close();
+            return;
+        }
         const auto called = method
                                 ? client.call(skill.node, *method)
                                 : opcua::Answer<opcua::CallResult>(tl::unexpected(method.error()));
@@ -77,8 +82,7 @@ struct OwnedRun {
 };
 
 /// Runs the skill as the command line says, under a lease, with a choice for the loss of this
-/// client; with an id, so that its end is learnt whatever the network does. Servers that know no
-/// executions get plain writes and Start.
+/// client; with an id, so that its end is learnt whatever the network does.
 opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& client,
                                         const OwnedRun& run) {
     std::optional<client::ControlHandle> control;
@@ -88,10 +92,6 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
                       client::ControlHandle::acquire(
                           client, controller == nullptr ? opcua::NodeId() : controller->node,
                           {.lease = run.owner.lease(), .on_loss = run.owner.action()}));
-    }
-    if (!control && run.owner.action() == skill::OwnerLossAction::skill_default &&
-        !skill.knowsExecutions()) {
-        return skill.run(run.values, run.deadline);
     }
     return skill.runWith({.parameters = run.values,
                           .on_owner_loss = run.owner.action(),

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "method_values.hpp"
+#include "metier/opcua/text.hpp"
+#include "metier/opcua_skill/values.hpp"
 #include "skill_nodes.hpp"
 #include "transition_log.hpp"
 
@@ -20,8 +23,11 @@ struct AsyncSkill::Impl {
     skill::SkillDescription description{};
     // Shared with the subscription's callback, which may run while this object moves.
     std::shared_ptr<TransitionLog> log = std::make_shared<TransitionLog>();
-    opcua::Subscription subscription{};
+    std::vector<opcua::Subscription> subscriptions{};
     opcua::Subscription stopping{};
+
+    Answer<> startByWrites(const skill::StartRequest& request, Done<std::string> done) const;
+    Answer<> look(const std::string& id, Done<skill::ExecutionRecord> done) const;
 
     /// Calls a method and passes the result of `read` for its outputs to `done`.
     template <typename T, typename Read>
@@ -52,6 +58,60 @@ skill::Fields allOptional(std::vector<skill::Field> fields) {
     return fields;
 }
 
+/// One start of a skill that takes no parameters with it.
+struct NamelessStart {
+    std::string id;
+    opcua::MethodCall start;
+    std::vector<std::string> names;  // of the parameters, in the order of the writes
+};
+
+Answer<> written(const std::vector<opcua::StatusCode>& statuses, const NamelessStart& start) {
+    for (std::size_t i = 0; i < start.names.size(); ++i) {
+        if (statuses.at(i).isBad()) {
+            return opcua::failed(statuses.at(i), "writing " + start.names.at(i));
+        }
+    }
+    return {};
+}
+
+/// Calls Start. What it begins may be over before any subscription could show it: `log` has a doubt
+/// once it is answered.
+Answer<> callStart(opcua::Client& client, const NamelessStart& start,
+                   const std::shared_ptr<TransitionLog>& log, AsyncSkill::Done<std::string> done) {
+    return client.callAsync(start.start,
+                            [id = start.id, log, done = std::move(done)](const auto& answer) {
+                                done(answer.map([&](const CallResult& /*none*/) { return id; }));
+                                log->doubt();
+                            });
+}
+
+/// Record of the execution that was started last, as far as state and results show it.
+Answer<skill::ExecutionRecord> recordFrom(const std::vector<opcua::DataValue>& values,
+                                          const SkillNodes& nodes, const std::string& id) {
+    const auto now = programNow(values);
+    if (!now) {
+        return opcua::failed(opcua::status::kBadTypeMismatch, "CurrentState");
+    }
+    skill::ExecutionRecord record;
+    record.id = id;
+    record.state = now->state;
+    const bool given_up = now->last == skill::TransitionNumber::suspended_to_ready;
+    if (now->state == skill::State::ready) {
+        record.reason = given_up ? skill::Reason::by_client : skill::Reason::finished;
+    }
+    if (now->state == skill::State::halted) {
+        record.reason = skill::Reason::error;
+    }
+    const auto first = values.size() - nodes.results.size() - 1;
+    record.reason_text = opcua::sanitise(values[first].value.as<std::string>().value_or(""));
+    for (std::size_t i = 0; i < nodes.results.size(); ++i) {
+        const auto& field = nodes.results[i].field;
+        record.result[field.name] = opcua_skill::fromOpcua(values[first + 1 + i].value, field.type)
+                                        .value_or(skill::Value{});
+    }
+    return record;
+}
+
 }  // namespace
 
 Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address, Watch watch) {
@@ -69,7 +129,12 @@ Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address,
     }
     impl->log->watch(
         {std::move(watch.on_transition), std::move(watch.on_missed), std::move(watch.on_ended)});
-    METIER_ASSIGN(impl->subscription, watchTransitions(client, impl->address.node, impl->log));
+    METIER_ASSIGN(impl->subscriptions,
+                  watchTransitions(client, impl->address.node, impl->nodes, impl->log));
+    if (impl->subscriptions.empty()) {
+        return opcua::failed(opcua::status::kBadServiceUnsupported,
+                             impl->address.name + " can be watched neither by events nor by state");
+    }
     return AsyncSkill(std::move(impl));
 }
 
@@ -87,28 +152,73 @@ const skill::SkillDescription& AsyncSkill::description() const noexcept {
 }
 
 bool AsyncSkill::knowsExecutions() const noexcept {
-    return !impl_->nodes.start_with.isNull() && !impl_->nodes.get_execution.isNull();
+    return impl_->nodes.knowsExecutions();
 }
 
 Answer<AsyncSkill::Now> AsyncSkill::now() const {
     const auto& nodes = impl_->nodes;
-    METIER_ASSIGN(
-        const auto values,
-        impl_->client.readMany({{nodes.state_number}, {nodes.reason_text}, {nodes.execution_id}}));
-    const auto number = values[0].value.as<std::uint32_t>();
-    if (!number) {
+    auto items = programItems(nodes.program);
+    const auto first = items.size();
+    items.push_back({nodes.reason_text});
+    items.push_back({nodes.execution_id});
+    METIER_ASSIGN(const auto values, impl_->client.readMany(std::move(items)));
+    const auto program = programNow(values);
+    if (!program) {
         return opcua::failed(opcua::status::kBadTypeMismatch,
-                             impl_->address.name + ": CurrentState/Number");
+                             impl_->address.name + ": CurrentState");
     }
-    return Now{static_cast<skill::State>(*number), values[1].value.as<std::string>().value_or(""),
-               values[2].value.as<std::string>().value_or("")};
+    return Now{program->state, values[first].value.as<std::string>().value_or(""),
+               values[first + 1].value.as<std::string>().value_or("")};
 }
 
 Answer<> AsyncSkill::startWith(const skill::StartRequest& request, Done<std::string> done) const {
+    if (!knowsExecutions()) {
+        return impl_->startByWrites(request, std::move(done));
+    }
     return impl_->send<std::string>(
         impl_->nodes.start_with, "StartWith", startWithInputs(request, impl_->nodes),
         std::move(done), [](const std::vector<opcua::Value>& outputs) -> Answer<std::string> {
             return outputs.empty() ? std::string() : outputs.front().as<std::string>().value_or("");
+        });
+}
+
+Answer<> AsyncSkill::Impl::startByWrites(const skill::StartRequest& request,
+                                         Done<std::string> done) const {
+    if (request.epoch != 0) {
+        return opcua::failed(opcua::status::kBadMethodInvalid,
+                             address.name + " has no StartWith: it takes no lease");
+    }
+    NamelessStart start{
+        request.execution_id,
+        {address.node, nodes.methods.at(static_cast<std::size_t>(skill::Method::start))},
+        {}};
+    std::vector<opcua::WriteItem> writes;
+    for (const auto& [name, value] : request.parameters) {
+        const auto found =
+            std::find_if(nodes.parameters.begin(), nodes.parameters.end(),
+                         [&name = name](const auto& node) { return node.field.name == name; });
+        if (found == nodes.parameters.end()) {
+            return opcua::failed(opcua::status::kBadNoMatch,
+                                 fmt::format("{} has no parameter '{}'", address.name, name));
+        }
+        writes.push_back({found->node, opcua_skill::toOpcua(value)});
+        start.names.push_back(name);
+    }
+    if (writes.empty()) {
+        return callStart(client, start, log, std::move(done));
+    }
+    return client.writeManyAsync(
+        std::move(writes),
+        [&client = client, start = std::move(start), log = log,
+         done = std::move(done)](const Answer<std::vector<opcua::StatusCode>>& statuses) {
+            auto begun =
+                statuses ? written(*statuses, start) : Answer<>(tl::unexpected(statuses.error()));
+            if (begun) {
+                begun = callStart(client, start, log, done);
+            }
+            if (!begun) {
+                done(tl::unexpected(begun.error()));
+            }
         });
 }
 
@@ -127,11 +237,28 @@ Answer<> AsyncSkill::check(const skill::ValueMap& parameters, Done<skill::CheckR
 }
 
 Answer<> AsyncSkill::execution(const std::string& id, Done<skill::ExecutionRecord> done) const {
+    if (!knowsExecutions()) {
+        return impl_->look(id, std::move(done));
+    }
     return impl_->send<skill::ExecutionRecord>(
         impl_->nodes.get_execution, "GetExecution", {opcua::Value::of(id)}, std::move(done),
         [id, results = impl_->description.results,
          name = impl_->address.name](const std::vector<opcua::Value>& outputs) {
             return executionFrom(outputs, id, results, name);
+        });
+}
+
+Answer<> AsyncSkill::Impl::look(const std::string& id, Done<skill::ExecutionRecord> done) const {
+    auto items = programItems(nodes.program);
+    items.push_back({nodes.reason_text});
+    for (const auto& result : nodes.results) {
+        items.push_back({result.node});
+    }
+    return client.readManyAsync(
+        std::move(items), [id, nodes = nodes, done = std::move(done)](
+                              const Answer<std::vector<opcua::DataValue>>& values) {
+            done(values ? recordFrom(*values, nodes, id)
+                        : Answer<skill::ExecutionRecord>(tl::unexpected(values.error())));
         });
 }
 

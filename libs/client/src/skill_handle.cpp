@@ -48,8 +48,8 @@ Answer<> SkillHandle::Impl::readNodes() {
 }
 
 Answer<> SkillHandle::Impl::subscribe() {
-    subscription = {};
-    METIER_ASSIGN(subscription, watchTransitions(client, address.node, log));
+    subscriptions.clear();
+    METIER_ASSIGN(subscriptions, watchTransitions(client, address.node, nodes, log));
     return {};
 }
 
@@ -140,7 +140,7 @@ const std::vector<skill::Field>& SkillHandle::results() const noexcept {
 }
 
 bool SkillHandle::knowsExecutions() const noexcept {
-    return impl_->nodes.start_with != opcua::NodeId{} && impl_->tellsExecutions();
+    return impl_->nodes.knowsExecutions();
 }
 
 bool SkillHandle::takesParents() const noexcept {
@@ -178,7 +178,7 @@ Answer<> SkillHandle::setAsync(std::string_view name, const skill::Value& value,
 
 Answer<> SkillHandle::call(Method method) {
     METIER_TRY(impl_->refresh());
-    const auto& node = impl_->nodes.methods.at(static_cast<std::size_t>(method));
+    METIER_ASSIGN(const auto node, impl_->methodNode(method));
     const auto ask = [&] {
         return impl_->client.call(opcua::MethodCall{impl_->address.node, node, {}, impl_->boot});
     };
@@ -204,7 +204,37 @@ Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(opcua::NodeId Sk
     return std::move(result->outputs);
 }
 
+Answer<opcua::NodeId> SkillHandle::Impl::methodNode(Method method) const {
+    const auto& node = nodes.methods.at(static_cast<std::size_t>(method));
+    if (node.isNull()) {
+        return tl::unexpected(failureOf(Errc::not_supported,
+                                        fmt::format("{} has no {}", address.name, toString(method)),
+                                        opcua::status::kBadMethodInvalid));
+    }
+    return node;
+}
+
+Answer<std::string> SkillHandle::Impl::startByWrites(SkillHandle& handle,
+                                                     const skill::StartRequest& request) {
+    if (request.epoch != 0 || request.on_owner_loss != skill::OwnerLossAction::skill_default) {
+        return tl::unexpected(failureOf(
+            Errc::not_supported,
+            fmt::format("{} has no StartWith: its server does not stop it when its client is lost",
+                        address.name),
+            opcua::status::kBadMethodInvalid));
+    }
+    for (const auto& [name, value] : request.parameters) {
+        METIER_TRY(handle.set(name, value));
+    }
+    METIER_TRY(handle.start());
+    return request.execution_id.empty() ? newExecutionId() : request.execution_id;
+}
+
 Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
+    METIER_TRY(impl_->refresh());
+    if (!knowsExecutions()) {
+        return impl_->startByWrites(*this, request);
+    }
     METIER_ASSIGN(const auto outputs, impl_->begin([&] {
         return impl_->callMetier(&SkillNodes::start_with, "StartWith",
                                  startWithInputs(request, impl_->nodes));
@@ -243,8 +273,8 @@ Answer<> SkillHandle::reset() {
 
 Answer<bool> SkillHandle::executable(Method method) {
     METIER_TRY(impl_->refresh());
-    return impl_->client.readUserExecutable(
-        impl_->nodes.methods.at(static_cast<std::size_t>(method)));
+    const auto node = impl_->methodNode(method);
+    return node ? impl_->client.readUserExecutable(*node) : Answer<bool>(false);
 }
 
 Answer<State> SkillHandle::state() {
@@ -253,14 +283,16 @@ Answer<State> SkillHandle::state() {
 
 Answer<State> SkillHandle::Impl::state() {
     METIER_TRY(refresh());
-    METIER_ASSIGN(const auto value, client.read(nodes.state_number));
-    const auto number = value.as<std::uint32_t>();
-    if (!number || *number < static_cast<std::uint32_t>(State::halted) ||
-        *number > static_cast<std::uint32_t>(State::suspended)) {
-        return opcua::failed(opcua::status::kBadTypeMismatch,
-                             address.name + ": CurrentState/Number");
+    METIER_ASSIGN(const auto now, look());
+    return now.state;
+}
+
+Answer<ProgramNow> SkillHandle::Impl::look() const {
+    METIER_ASSIGN(const auto values, client.readMany(programItems(nodes.program)));
+    if (const auto now = programNow(values)) {
+        return *now;
     }
-    return static_cast<State>(*number);
+    return opcua::failed(opcua::status::kBadTypeMismatch, address.name + ": CurrentState");
 }
 
 Answer<skill::ValueMap> SkillHandle::Impl::readResults() const {

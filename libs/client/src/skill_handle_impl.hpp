@@ -14,11 +14,15 @@
 
 namespace metier::client {
 
+/// A name for an execution.
+std::string newExecutionId();
+
 /// One execution for whose end a call waits.
 struct AwaitedExecution {
     TransitionLog::Mark from;         ///< transitions since may concern it
     std::uint64_t boot = 0;           ///< run of the server that was asked to start it
     std::optional<std::string> id{};  ///< none: known only with the transition that starts it
+    bool begun = true;                ///< whether it has begun, as far as is known
 };
 
 /// Threading: as SkillHandle, but for the log.
@@ -31,7 +35,7 @@ struct SkillHandle::Impl {
     std::vector<skill::Field> results{};
     // Shared with the subscription's callback, which may run while this object moves.
     std::shared_ptr<TransitionLog> log = std::make_shared<TransitionLog>();
-    opcua::Subscription subscription{};
+    std::vector<opcua::Subscription> subscriptions{};
     // Execution that this handle started or resumed last, until awaitEnd() has returned its end.
     std::optional<AwaitedExecution> own{};
 
@@ -56,7 +60,14 @@ struct SkillHandle::Impl {
     opcua::Answer<skill::ValueMap> readResults() const;
     opcua::Answer<skill::State> state();
     opcua::Answer<skill::ExecutionRecord> execution(const std::string& id);
-    bool tellsExecutions() const { return nodes.get_execution != opcua::NodeId{}; }
+    /// Method for a skill that takes it.
+    /// Errors: not_supported.
+    opcua::Answer<opcua::NodeId> methodNode(skill::Method method) const;
+    /// startWith() of a skill that has none: writes, then Start.
+    /// Errors: also not_supported, for what only StartWith can ask for.
+    opcua::Answer<std::string> startByWrites(SkillHandle& handle,
+                                             const skill::StartRequest& request);
+    opcua::Answer<ProgramNow> look() const;
 
     /// Asks to start or resume, which awaitEnd() is then about.
     template <typename Ask>
@@ -81,11 +92,22 @@ struct SkillHandle::Impl {
     std::optional<opcua::Failure> lostExecution(const std::string& id, std::uint64_t since_boot,
                                                 const opcua::Failure& answer) const;
     opcua::Answer<skill::ValueMap> awaitOutcome(AwaitedExecution awaited, SteadyTime deadline);
+    /// Waits for the next transition that `wanted` accepts.
+    /// \return nothing, if it is time to look at the state
+    opcua::Answer<std::optional<TransitionLog::Found>> awaitTransition(
+        TransitionLog::Mark from, SteadyTime deadline,
+        const std::function<bool(const skill::TransitionEvent&)>& wanted);
+    /// The end of an execution that the server does not name, found by looking at the state.
+    opcua::Answer<skill::TransitionEvent> awaitNamelessEnd(const AwaitedExecution& awaited,
+                                                           SteadyTime deadline);
+    /// That end, which `now` shows, with what the server's event says of it.
+    skill::TransitionEvent namelessEnd(const ProgramNow& now, TransitionLog::Mark from);
     opcua::Answer<skill::ValueMap> outcomeOf(const AwaitedExecution& awaited,
                                              const skill::TransitionEvent& end,
                                              SteadyTime deadline);
     opcua::Answer<skill::ValueMap> outcomeOf(const skill::ExecutionRecord& record) const;
     opcua::Failure unknownOutcome(const std::string& why) const;
+    opcua::Failure startedAgain() const;
     /// Whether the connection is back after `failure`; false at the deadline.
     /// Waits until the skill is in a state that `wanted` names, and returns it.
     opcua::Answer<skill::State> awaitState(SkillHandle& handle, SteadyTime deadline,

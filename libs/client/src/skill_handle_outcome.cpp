@@ -1,6 +1,8 @@
 // Waiting for what a skill does, also over losses of the connection.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "metier/base/random.hpp"
@@ -16,6 +18,7 @@ using skill::ExecutionRecord;
 using skill::State;
 using skill::TransitionEvent;
 using skill::TransitionNumber;
+using std::chrono_literals::operator""ms;
 using Delivery = Failure::Delivery;
 
 bool isOver(State state) {
@@ -53,11 +56,11 @@ Failure givenUpFailure(const std::string& skill) {
     return failureOf(Errc::cancelled, skill + " was suspended, then reset: it did not finish");
 }
 
-/// Names an execution so that its client can ask for it even if the answer to Start is lost.
-std::string newExecutionId() {
-    constexpr std::size_t kDigits = 24;
-    return randomHex(kDigits);
-}
+// How often the state of a skill is looked at that may send nothing at its end.
+constexpr auto kLook = std::chrono::seconds(1);
+constexpr auto kLookUnsubscribed = std::chrono::milliseconds(20);
+// Longest time for which the event of an end may come after the state that shows it.
+constexpr auto kEventTime = std::chrono::milliseconds(200);
 
 /// Whether to ask again, once the connection allows it.
 bool isForLackOfConnection(const Failure& failure) {
@@ -65,6 +68,12 @@ bool isForLackOfConnection(const Failure& failure) {
 }
 
 }  // namespace
+
+/// The client can ask for an execution that it named even if the answer to Start is lost.
+std::string newExecutionId() {
+    constexpr std::size_t kDigits = 24;
+    return randomHex(kDigits);
+}
 
 bool SkillHandle::Impl::isBackAfter(const Failure& failure, SteadyTime deadline) {
     return isForLackOfConnection(failure) && std::chrono::steady_clock::now() < deadline &&
@@ -141,7 +150,7 @@ Answer<skill::ValueMap> SkillHandle::Impl::outcomeOf(const AwaitedExecution& awa
         return tl::unexpected(givenUpFailure(address.name));
     }
     auto values = readResults();
-    if (values || !isForLackOfConnection(values.error()) || !tellsExecutions()) {
+    if (values || !isForLackOfConnection(values.error()) || !nodes.knowsExecutions()) {
         return values;
     }
     const auto record = learn(*awaited.id, awaited.boot, deadline);
@@ -150,6 +159,10 @@ Answer<skill::ValueMap> SkillHandle::Impl::outcomeOf(const AwaitedExecution& awa
 
 Answer<skill::ValueMap> SkillHandle::Impl::awaitOutcome(AwaitedExecution awaited,
                                                         SteadyTime deadline) {
+    if (!nodes.knowsExecutions()) {
+        METIER_ASSIGN(const auto end, awaitNamelessEnd(awaited, deadline));
+        return outcomeOf(awaited, end, deadline);
+    }
     for (;;) {
         const auto found = log->await(awaited.from, deadline, [&](const TransitionEvent& event) {
             return awaited.id ? endsExecution(event) && event.execution_id == *awaited.id
@@ -168,7 +181,7 @@ Answer<skill::ValueMap> SkillHandle::Impl::awaitOutcome(AwaitedExecution awaited
             awaited.from.number = (*found)->number + 1;
             continue;
         }
-        if (awaited.id.value_or("").empty() || !tellsExecutions()) {
+        if (awaited.id.value_or("").empty()) {
             return tl::unexpected(unknownOutcome("transitions may have been missed"));
         }
         awaited.from.doubts = log->mark().doubts;  // before it is asked for
@@ -194,15 +207,88 @@ Answer<State> SkillHandle::Impl::awaitState(SkillHandle& handle, SteadyTime dead
         if (wanted(*now)) {
             return *now;
         }
-        const auto found = log->await(
+        const auto found = awaitTransition(
             from, deadline, [&wanted](const TransitionEvent& event) { return wanted(event.to); });
         if (!found) {
             return tl::unexpected(found.error());
         }
-        if (*found) {
+        if (*found && nodes.knowsExecutions()) {
             return (*found)->event.to;
         }
     }
+}
+
+Answer<std::optional<TransitionLog::Found>> SkillHandle::Impl::awaitTransition(
+    TransitionLog::Mark from, SteadyTime deadline,
+    const std::function<bool(const TransitionEvent&)>& wanted) {
+    if (nodes.knowsExecutions()) {
+        return log->await(from, deadline, wanted);
+    }
+    const auto look =
+        std::chrono::steady_clock::now() + (subscriptions.empty() ? kLookUnsubscribed : kLook);
+    auto found = log->await(from, std::min(look, deadline), wanted);
+    const bool time_to_look = !found && found.error().code == Errc::timeout && look < deadline;
+    return time_to_look ? std::optional<TransitionLog::Found>() : std::move(found);
+}
+
+TransitionEvent SkillHandle::Impl::namelessEnd(const ProgramNow& now, TransitionLog::Mark from) {
+    const auto ends_so = [&now](const TransitionEvent& event) { return event.to == now.state; };
+    const auto patience =
+        std::chrono::steady_clock::now() + (now.state == State::halted ? kEventTime : 0ms);
+    for (auto found = log->await(from, patience, ends_so); found;
+         found = log->await(from, patience, ends_so)) {
+        if (*found) {
+            auto event = (*found)->event;
+            event.reason =
+                now.state == State::halted ? skill::Reason::error : skill::Reason::finished;
+            return event;
+        }
+        from.doubts = log->mark().doubts;
+    }
+    TransitionEvent end;  // as far as the state shows it
+    end.to = now.state;
+    end.number = now.last.value_or(now.state == State::halted ? TransitionNumber::running_to_halted
+                                                              : TransitionNumber::running_to_ready);
+    end.reason = now.state == State::halted ? skill::Reason::error : skill::Reason::finished;
+    end.reason_text = reasonText();
+    return end;
+}
+
+Answer<TransitionEvent> SkillHandle::Impl::awaitNamelessEnd(const AwaitedExecution& awaited,
+                                                            SteadyTime deadline) {
+    auto from = awaited.from;
+    bool begun = awaited.begun;
+    for (;;) {
+        const auto heard =
+            awaitTransition(from, deadline, [](const TransitionEvent& /*any*/) { return true; });
+        const bool late = !heard && heard.error().code == Errc::timeout;
+        if (!heard && !late) {
+            return tl::unexpected(unknownOutcome(heard.error().message));
+        }
+        from = log->mark();
+        const auto now = look();
+        if (client.boot() != awaited.boot) {
+            return tl::unexpected(startedAgain());
+        }
+        if (now && isOver(now->state) && begun) {
+            return namelessEnd(*now, awaited.from);
+        }
+        begun = begun || (now && !isOver(now->state));
+        if (!now && !isBackAfter(now.error(), deadline)) {
+            return tl::unexpected(unknownOutcome(now.error().message));
+        }
+        if (late) {
+            return tl::unexpected(heard.error());
+        }
+    }
+}
+
+Failure SkillHandle::Impl::startedAgain() const {
+    return failureOf(
+        Errc::execution_lost,
+        fmt::format("{}: the server was started again: what ran there was not resumed, "
+                    "the motion is over",
+                    address.name));
 }
 
 Answer<> SkillHandle::awaitState(State wanted, SteadyTime deadline) {
@@ -215,8 +301,14 @@ Answer<State> SkillHandle::awaitRest(SteadyTime deadline) {
 }
 
 Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
-    auto [from, boot, id] =
-        impl_->own.value_or(AwaitedExecution{impl_->log->mark(), impl_->client.boot()});
+    const auto awaited = impl_->own.value_or(
+        AwaitedExecution{.from = impl_->log->mark(), .boot = impl_->client.boot(), .begun = false});
+    auto from = awaited.from;
+    if (!impl_->nodes.knowsExecutions()) {
+        auto end = impl_->awaitNamelessEnd(awaited, deadline);
+        impl_->own.reset();
+        return end;
+    }
     for (;;) {
         auto found = impl_->log->await(from, deadline, endsExecution);
         if (!found) {
@@ -230,13 +322,9 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
         }
         from.doubts = impl_->log->mark().doubts;
         const auto now = state();
-        if (now && impl_->client.boot() != boot) {
+        if (now && impl_->client.boot() != awaited.boot) {
             impl_->own.reset();
-            return tl::unexpected(failureOf(
-                Errc::execution_lost,
-                fmt::format("{}: the server was started again: what ran there was not resumed, the "
-                            "motion is over",
-                            address().name)));
+            return tl::unexpected(impl_->startedAgain());
         }
         if (now && isOver(*now)) {
             impl_->own.reset();
@@ -253,8 +341,8 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
 
 /// Parameters of a Start that was refused do not count for the next one.
 void SkillHandle::takeBack(const skill::ValueMap& parameters, const Failure& refusal) {
-    if (refusal.delivery != Delivery::answered) {
-        return;  // it may run
+    if (refusal.delivery != Delivery::answered || !knowsExecutions()) {
+        return;  // it may run, or the server knows no default
     }
     for (const auto& [name, value] : parameters) {
         static_cast<void>(set(name, {}));  // if that fails the session ends, and with it the values
@@ -281,7 +369,7 @@ Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
                                              SteadyTime deadline) {
     METIER_TRY(impl_->refresh());
     auto named = request;
-    if (named.execution_id.empty() && impl_->tellsExecutions()) {
+    if (named.execution_id.empty()) {
         named.execution_id = newExecutionId();
     }
     AwaitedExecution awaited{impl_->log->mark(), impl_->boot};
@@ -293,11 +381,13 @@ Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
     if (!started && started.error().code == Errc::already_exists) {
         started.error().code = Errc::execution_lost;  // it began, and nothing began now
     }
-    if (!started && !(unsure && impl_->tellsExecutions())) {
+    if (!started && !(unsure && knowsExecutions())) {
         return tl::unexpected(started.error());
     }
     awaited.id = started ? *started : named.execution_id;
-    if (unsure || !request.execution_id.empty()) {  // it may have been started, or be over, before
+    if (knowsExecutions() &&
+        (unsure ||
+         !request.execution_id.empty())) {  // it may have been started, or be over, before
         auto record = impl_->learn(*awaited.id, awaited.boot, deadline);
         if (unsure && !record && record.error().code == Errc::not_found) {
             record.error().message = started.error().message + "; it was not: nothing was started";
@@ -319,7 +409,7 @@ Answer<skill::ValueMap> SkillHandle::orHalt(Answer<skill::ValueMap> outcome) {
         return outcome;
     }
     // The work has lost its client's interest: it must not go on alone.
-    const auto halted = halt();
+    const auto halted = halt();  // of what cannot be halted, the error says so
     if (halted) {
         return outcome;
     }

@@ -126,20 +126,20 @@ tl::unexpected<opcua::Failure> lacks(const SkillAddress& address, std::string_vi
     return opcua::failed(opcua::status::kBadNoMatch, address.name + " has no " + std::string(what));
 }
 
-Answer<> findProgramNodes(Client& client, const SkillAddress& address,
-                          const std::vector<Reference>& children, SkillNodes& nodes) {
+Answer<> findNodes(Client& client, const SkillAddress& address,
+                   const std::vector<Reference>& children, SkillNodes& nodes) {
     for (const auto method : kMethods) {
-        const auto* found = findNamed(children, toString(method));
-        if (found == nullptr) {
-            return lacks(address, toString(method));
+        if (const auto* found = findNamed(children, toString(method))) {
+            nodes.methods.at(static_cast<std::size_t>(method)) = found->target;
         }
-        nodes.methods.at(static_cast<std::size_t>(method)) = found->target;
     }
-    const auto number = client.translate(address.node, {{0, "CurrentState"}, {0, "Number"}});
-    if (!number) {
-        return lacks(address, "CurrentState/Number");
+    if (nodes.methods.at(static_cast<std::size_t>(skill::Method::start)).isNull()) {
+        return lacks(address, "Start");
     }
-    nodes.state_number = *number;
+    METIER_ASSIGN(nodes.program, findProgramNodes(client, address.node));
+    if (nodes.program.state.isNull()) {
+        return lacks(address, "CurrentState");
+    }
     const std::array<std::pair<std::string_view, NodeId*>, 6> optional{
         {{"ReasonText", &nodes.reason_text},
          {"ExecutionId", &nodes.execution_id},
@@ -170,7 +170,7 @@ Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
     Questions questions(client);
     METIER_ASSIGN(const auto children, childrenOf(questions, address.node));
     SkillNodes nodes;
-    METIER_TRY(findProgramNodes(client, address, children, nodes));
+    METIER_TRY(findNodes(client, address, children, nodes));
     if (const auto* suspendable = findNamed(children, "Suspendable")) {
         const auto value = questions.read(suspendable->target);
         nodes.suspendable = (value ? value->as<bool>() : Result<bool>(true)).value_or(true);

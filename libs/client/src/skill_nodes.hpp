@@ -9,6 +9,7 @@
 #include "metier/opcua/client.hpp"
 #include "metier/skill/field.hpp"
 #include "metier/skill/state.hpp"
+#include "program_state.hpp"
 
 namespace metier::client {
 
@@ -22,18 +23,23 @@ struct FieldNode {
 
 /// The nodes below one skill that a client uses.
 struct SkillNodes {
-    std::array<opcua::NodeId, 6> methods;  ///< in the order of skill::Method
-    opcua::NodeId start_with;              ///< null if the server has none, as the next
+    /// In the order of skill::Method; null if the skill lacks it, which only Start never does.
+    std::array<opcua::NodeId, 6> methods;
+    ProgramNodes program;
+    opcua::NodeId start_with;  ///< null if the server has none, as the next
     opcua::NodeId check;
     opcua::NodeId get_execution;
-    opcua::NodeId state_number;
-    opcua::NodeId reason_text;  ///< null if the server has none, as the next
+    opcua::NodeId reason_text;
     opcua::NodeId execution_id;
     /// Null if the server keeps no records for clients; then it takes no parent of a start, either.
     opcua::NodeId records;
     bool suspendable = true;
     std::vector<FieldNode> parameters;
     std::vector<FieldNode> results;
+
+    /// Whether the server answers for executions by their names. One that does not is not ours:
+    /// what it runs is known only by looking at the skill's state.
+    bool knowsExecutions() const { return !start_with.isNull() && !get_execution.isNull(); }
 };
 
 std::vector<skill::Field> fieldsOf(const std::vector<FieldNode>& nodes);

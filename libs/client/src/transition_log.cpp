@@ -10,6 +10,7 @@
 namespace metier::client {
 namespace {
 
+using skill::State;
 using skill::TransitionEvent;
 
 constexpr std::size_t kKept = 1000;
@@ -57,6 +58,71 @@ std::optional<TransitionEvent> eventFrom(const std::vector<opcua::Value>& fields
     return event;
 }
 
+/// The fields that watchNameless() asks for, in its order: every TransitionEventType has them
+/// (OPC 10000-16), but for the last.
+enum NamelessField : std::size_t {
+    kTransitionId,
+    kTransitionName,
+    kFromId,
+    kFromName,
+    kToId,
+    kToName,
+    kNamelessTime,
+    kNamelessMessage,
+    kNamelessSeverity,
+    kNamelessIntermediate,
+    kNamelessCount,
+};
+
+opcua::EventFilter namelessFilter() {
+    return {.fields = {{{0, "Transition"}, {0, "Id"}},
+                       {{0, "Transition"}},
+                       {{0, "FromState"}, {0, "Id"}},
+                       {{0, "FromState"}},
+                       {{0, "ToState"}, {0, "Id"}},
+                       {{0, "ToState"}},
+                       {{0, "Time"}},
+                       {{0, "Message"}},
+                       {{0, "Severity"}},
+                       {{0, "IntermediateResult"}}},
+            .of_type = opcua::ids::kTransitionEventType};
+}
+
+std::optional<skill::TransitionNumber> namelessNumber(const std::vector<opcua::Value>& fields) {
+    const opcua::Value none;
+    if (const auto named = transitionFrom({fields[kTransitionId], none, fields[kTransitionName]})) {
+        return named;
+    }
+    const auto from = stateFrom({fields[kFromId], none, fields[kFromName]});
+    const auto to = stateFrom({fields[kToId], none, fields[kToName]});
+    return from && to ? transitionBetween(*from, *to) : std::nullopt;
+}
+
+/// An event without Reason: the server's message says why.
+std::optional<TransitionEvent> namelessEventFrom(std::vector<opcua::Value> fields) {
+    if (fields.size() + 1 == kNamelessCount) {
+        fields.emplace_back();
+    }
+    const auto number = fields.size() == kNamelessCount ? namelessNumber(fields) : std::nullopt;
+    if (!number) {
+        return std::nullopt;
+    }
+    TransitionEvent event;
+    event.number = *number;
+    event.from = skill::fromState(*number);
+    event.to = skill::toState(*number);
+    event.time = fields[kNamelessTime].as<UtcTime>().value_or(UtcTime{});
+    const auto message = fields[kNamelessMessage].as<opcua::LocalizedText>();
+    event.message = message ? opcua::sanitise(message->text) : "";
+    event.reason_text = event.message;
+    event.severity = fields[kNamelessSeverity].as<std::uint16_t>().value_or(0);
+    const auto& intermediate = fields[kNamelessIntermediate];
+    event.intermediate_result =
+        opcua_skill::fromOpcua(intermediate, opcua_skill::valueTypeOf(intermediate))
+            .value_or(skill::Value{});
+    return event;
+}
+
 /// \return nothing for any other notice: the transition that follows says the same
 std::optional<skill::StoppingEvent> stoppingFrom(const opcua::EventNotice& notice) {
     constexpr std::size_t count = 5;  // number of the fields that watchStopping() asks for
@@ -76,9 +142,10 @@ std::optional<skill::StoppingEvent> stoppingFrom(const opcua::EventNotice& notic
 
 }  // namespace
 
-opcua::Answer<opcua::Subscription> watchTransitions(opcua::Client& client,
-                                                    const opcua::NodeId& skill,
-                                                    std::shared_ptr<TransitionLog> log) {
+namespace {
+
+opcua::Answer<opcua::Subscription> watchNamed(opcua::Client& client, const opcua::NodeId& skill,
+                                              std::shared_ptr<TransitionLog> log) {
     // A server that does not yet list the namespace has no extra event fields: any index will do.
     const auto device = client.namespaceIndex("https://fortiss.org/UA/Device/").value_or(1);
     const opcua::EventFilter filter{.fields = {{{0, "Transition"}, {0, "Number"}},
@@ -93,6 +160,85 @@ opcua::Answer<opcua::Subscription> watchTransitions(opcua::Client& client,
     return client.subscribeEvents(
         skill, filter,
         [log = std::move(log)](const opcua::EventNotice& notice) { log->add(notice); });
+}
+
+/// \return nothing, if the server refuses
+/// Errors: those of the connection.
+opcua::Answer<std::optional<opcua::Subscription>> unlessRefused(
+    opcua::Answer<opcua::Subscription> subscription) {
+    if (subscription) {
+        return std::optional(std::move(*subscription));
+    }
+    if (subscription.error().delivery == opcua::Failure::Delivery::answered) {
+        return std::optional<opcua::Subscription>();
+    }
+    return tl::unexpected(std::move(subscription.error()));
+}
+
+/// \return nothing, if the skill sends no events
+opcua::Answer<std::optional<opcua::Subscription>> watchNameless(
+    opcua::Client& client, const opcua::NodeId& skill, std::shared_ptr<TransitionLog> log) {
+    constexpr std::uint8_t subscribable = 1;
+    const auto notifier = client.read(skill, opcua::AttributeId::event_notifier);
+    if (!notifier || (notifier->as<std::uint8_t>().value_or(0) & subscribable) == 0) {
+        return std::optional<opcua::Subscription>();
+    }
+    const auto subscribe = [&](opcua::EventFilter filter) {
+        return unlessRefused(client.subscribeEvents(
+            skill, std::move(filter),
+            [log](const opcua::EventNotice& notice) { log->addNameless(notice); }));
+    };
+    METIER_ASSIGN(auto subscription, subscribe(namelessFilter()));
+    if (!subscription) {  // for lack of Programs in its types
+        auto filter = namelessFilter();
+        filter.fields.pop_back();
+        METIER_ASSIGN(subscription, subscribe(std::move(filter)));
+    }
+    return subscription;
+}
+
+enum class Adds { doubts, states };
+
+/// \return nothing, if the server refuses
+opcua::Answer<std::optional<opcua::Subscription>> watchState(opcua::Client& client,
+                                                             const ProgramNodes& nodes,
+                                                             std::shared_ptr<TransitionLog> log,
+                                                             Adds adds) {
+    constexpr std::uint32_t queue = 100;
+    const auto& node = !nodes.state_id.isNull()       ? nodes.state_id
+                       : !nodes.state_number.isNull() ? nodes.state_number
+                                                      : nodes.state;
+    return unlessRefused(client.subscribeData(
+        node, {.sampling_interval = std::chrono::milliseconds(0), .queue_size = queue},
+        [log = std::move(log), adds](const opcua::DataValue& data) {
+            const auto state = stateFrom({data.value, data.value, data.value});
+            if (state && adds == Adds::states) {
+                log->addState(*state, data.source_time);
+            }
+            log->doubt();
+        }));
+}
+
+}  // namespace
+
+opcua::Answer<std::vector<opcua::Subscription>> watchTransitions(
+    opcua::Client& client, const opcua::NodeId& skill, const SkillNodes& nodes,
+    std::shared_ptr<TransitionLog> log) {
+    std::vector<opcua::Subscription> subscriptions;
+    if (nodes.knowsExecutions()) {
+        METIER_ASSIGN(auto named, watchNamed(client, skill, std::move(log)));
+        subscriptions.push_back(std::move(named));
+        return subscriptions;
+    }
+    METIER_ASSIGN(auto events, watchNameless(client, skill, log));
+    METIER_ASSIGN(auto state, watchState(client, nodes.program, std::move(log),
+                                         events ? Adds::doubts : Adds::states));
+    for (auto* subscription : {&events, &state}) {
+        if (*subscription) {
+            subscriptions.push_back(std::move(**subscription));
+        }
+    }
+    return subscriptions;
 }
 
 opcua::Answer<opcua::Subscription> watchStopping(
@@ -127,29 +273,69 @@ void TransitionLog::append(TransitionEvent event) {
 
 void TransitionLog::add(const opcua::EventNotice& notice) {
     using Kind = opcua::EventNotice::Kind;
-    const auto event = notice.kind == Kind::event ? eventFrom(notice.fields) : std::nullopt;
-    const bool ended = notice.kind == Kind::ended;
+    News news;
+    if (notice.kind == Kind::event) {
+        news.event = eventFrom(notice.fields);
+    }
+    if (notice.kind == Kind::ended) {
+        news.ended = notice.status;
+    }
     // The end of an interruption follows.
-    const bool doubt = !event && !ended && notice.kind != Kind::interrupted;
+    news.doubt = !news.event && !news.ended && notice.kind != Kind::interrupted;
+    take(news);
+}
+
+void TransitionLog::addNameless(const opcua::EventNotice& notice) {
+    using Kind = opcua::EventNotice::Kind;
+    News news{.doubt = true};  // also at the end: the state can still be read
+    if (notice.kind == Kind::event) {
+        news.event = namelessEventFrom(notice.fields);
+    }
+    take(news);
+}
+
+void TransitionLog::addState(State state, UtcTime time) {
+    const auto before = std::exchange(state_, state);
+    const auto number = before ? transitionBetween(*before, state) : std::nullopt;
+    if (!number) {
+        return;
+    }
+    TransitionEvent event;
+    event.number = *number;
+    event.from = *before;
+    event.to = state;
+    event.time = time;
+    take({.event = event});
+}
+
+void TransitionLog::doubt() {
+    take({.doubt = true});
+}
+
+void TransitionLog::take(const News& news) {
     Watch watch;
     {
         const std::lock_guard lock(mutex_);
-        if (event) {
-            append(*event);
-        } else if (ended) {
-            ended_ = notice.status;
-        } else if (doubt) {
+        if (news.event) {
+            append(*news.event);
+        }
+        if (news.ended) {
+            ended_ = news.ended;
+        }
+        if (news.doubt) {
             ++doubts_;
         }
         watch = watch_;
     }
     changed_.notify_all();
-    if (event && watch.on_transition) {
-        watch.on_transition(*event);
-    } else if (doubt && watch.on_missed) {
+    if (news.event && watch.on_transition) {
+        watch.on_transition(*news.event);
+    }
+    if (news.doubt && watch.on_missed) {
         watch.on_missed();
-    } else if (ended && watch.on_ended) {
-        watch.on_ended("its events have ended: " + notice.status.name());
+    }
+    if (news.ended && watch.on_ended) {
+        watch.on_ended("its events have ended: " + news.ended->name());
     }
 }
 

@@ -13,6 +13,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/skill/program_observer.hpp"
+#include "skill_nodes.hpp"
 
 namespace metier::client {
 
@@ -29,6 +30,13 @@ public:
     };
 
     void add(const opcua::EventNotice& notice);
+    /// Adds an event of a server that does not name executions. It is also a doubt: the event may
+    /// be of an execution before, so who waits looks at the state.
+    void addNameless(const opcua::EventNotice& notice);
+    /// Adds the state of a skill that sends no events: the transition from the state before.
+    void addState(skill::State state, UtcTime time);
+    /// Counts a doubt, without any event.
+    void doubt();
     void watch(Watch watch);
 
     /// A point in what arrives.
@@ -51,6 +59,12 @@ public:
         const std::function<bool(const skill::TransitionEvent&)>& wanted);
 
 private:
+    struct News {
+        std::optional<skill::TransitionEvent> event{};
+        std::optional<opcua::StatusCode> ended{};
+        bool doubt = false;
+    };
+    void take(const News& news);
     std::optional<Found> findFrom(
         std::uint64_t from, const std::function<bool(const skill::TransitionEvent&)>& wanted) const;
     void append(skill::TransitionEvent event);
@@ -61,6 +75,7 @@ private:
     std::uint64_t first_number_ = 0;
     std::uint64_t doubts_ = 0;
     std::optional<opcua::StatusCode> ended_;
+    std::optional<skill::State> state_;  // that addState() added last
     Watch watch_;
 };
 
@@ -70,10 +85,11 @@ opcua::Answer<opcua::Subscription> watchStopping(
     opcua::Client& client, const opcua::NodeId& skill,
     std::function<void(const skill::StoppingEvent&)> on_stopping);
 
-/// Subscribes to the transitions of a skill; each is added to the log.
-/// Errors: the server's.
-opcua::Answer<opcua::Subscription> watchTransitions(opcua::Client& client,
-                                                    const opcua::NodeId& skill,
-                                                    std::shared_ptr<TransitionLog> log);
+/// Subscribes to the transitions of a skill; each is added to the log. A skill that does not name
+/// its executions is also watched by its state, or by it alone if it sends no events. \return no
+/// subscription at all, if the server has none for either Errors: the server's.
+opcua::Answer<std::vector<opcua::Subscription>> watchTransitions(
+    opcua::Client& client, const opcua::NodeId& skill, const SkillNodes& nodes,
+    std::shared_ptr<TransitionLog> log);
 
 }  // namespace metier::client

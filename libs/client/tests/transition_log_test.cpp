@@ -139,5 +139,77 @@ TEST(TransitionLog, WakesWhoWaitsByWhatComesAndByTheEnd) {
     EXPECT_TRUE(next(log, {})) << "what came before the end is still there";
 }
 
+/// A notice with the fields that every TransitionEventType has; `to` is a name, ids are Null.
+opcua::EventNotice namelessTransition(const std::string& from, const std::string& to) {
+    const auto name = [](const std::string& text) {
+        return opcua::Value::of(opcua::LocalizedText{"en", text});
+    };
+    return {Kind::event,
+            {{},
+             {},
+             {},
+             name(from),
+             {},
+             name(to),
+             opcua::Value::of(UtcTime(std::chrono::seconds(7))),
+             name("out of\nfilm"),
+             opcua::Value::of(std::uint16_t{500}),
+             opcua::Value::of(0.75)},
+            {}};
+}
+
+TEST(NamelessTransitions, AreEventsAndDoubtsAtOnce) {
+    TransitionLog log;
+    Heard heard;
+    log.watch(heard.watch());
+    const auto before = log.mark();
+    log.addNameless(namelessTransition("Running", "Halted"));
+    const auto event = next(log, before).value().event;
+    EXPECT_EQ(event.number, skill::TransitionNumber::running_to_halted);
+    EXPECT_EQ(event.to, skill::State::halted);
+    EXPECT_EQ(event.execution_id, "");
+    EXPECT_EQ(event.time, UtcTime(std::chrono::seconds(7)));
+    EXPECT_THAT(event.reason_text, HasSubstr("film"));
+    EXPECT_EQ(event.reason_text.find('\n'), std::string::npos);
+    EXPECT_EQ(event.intermediate_result, skill::Value(0.75));
+    EXPECT_EQ(log.mark().doubts, before.doubts + 1);
+    EXPECT_EQ(heard.transitions, 1);
+    EXPECT_EQ(heard.missed, 1);
+}
+
+TEST(NamelessTransitions, MayLackTheIntermediateResult) {
+    TransitionLog log;
+    auto notice = namelessTransition("Ready", "Running");
+    notice.fields.pop_back();
+    log.addNameless(notice);
+    EXPECT_EQ(next(log, {}).value().event.number, skill::TransitionNumber::ready_to_running);
+}
+
+TEST(NamelessTransitions, ThatAProgramDoesNotHaveAreDoubts) {
+    TransitionLog log;
+    const auto before = log.mark();
+    log.addNameless(namelessTransition("Ready", "Emergency"));
+    log.addNameless({Kind::event, {}, {}});
+    log.addNameless({Kind::ended, {}, opcua::status::kBadTimeout});
+    EXPECT_EQ(log.mark().number, before.number);
+    EXPECT_EQ(log.mark().doubts, before.doubts + 3);
+    EXPECT_FALSE(next(log, before)) << "its state can still be looked at";
+}
+
+TEST(StatesWithoutEvents, AreTakenForTheTransitionsBetweenThem) {
+    TransitionLog log;
+    using skill::State;
+    log.addState(State::ready, {});
+    EXPECT_EQ(log.mark().number, 0U) << "the first is no transition";
+    log.addState(State::running, {});
+    log.addState(State::running, {});
+    log.addState(State::halted, UtcTime(std::chrono::seconds(7)));
+    log.addState(State::running, {});  // Ready between them was missed
+    EXPECT_EQ(log.mark().number, 2U);
+    const auto second = next(log, {.number = 1}).value().event;
+    EXPECT_EQ(second.number, skill::TransitionNumber::running_to_halted);
+    EXPECT_EQ(second.time, UtcTime(std::chrono::seconds(7)));
+}
+
 }  // namespace
 }  // namespace metier::client

@@ -24,8 +24,12 @@ void tell(const SkillAddress& skill, std::string_view what) {
 
 /// Calls Halt. \return whether it was called: a skill that is Halted already is as it should be
 Result<bool> callHalt(opcua::Client& client, const SkillAddress& skill) {
-    METIER_ASSIGN(const auto method, client.translate(skill.node, {{0, "Halt"}}));
-    const auto called = client.call(skill.node, method);
+    const auto method = client.translate(skill.node, {{0, "Halt"}});
+    if (!method && method.error().status == opcua::status::kBadNoMatch) {
+        return fail(Errc::not_supported, skill.name + " has no Halt");
+    }
+    METIER_TRY(method);
+    const auto called = client.call(skill.node, *method);
     if (!called && called.error().status != opcua::status::kBadInvalidState) {
         return fail(called.error());
     }

@@ -1,6 +1,7 @@
 #include "metier/client/remote_server.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <utility>
 
@@ -61,8 +62,10 @@ Result<PendingUse> RemoteServer::open(const client::SkillAddress& skill, std::st
     METIER_ASSIGN(auto open, connection_->open(skill, link));
     METIER_ASSIGN(const auto now, open->skill.now());
     if (!open->skill.knowsExecutions()) {
-        return fail(Errc::not_supported,
-                    fmt::format("{}: {} has no StartWith and GetExecution", url(), skill.name));
+        spdlog::warn(
+            "{}: {} has no StartWith: parameters are written one by one, and it goes on "
+            "if this server dies",
+            url(), skill.name);
     }
     return PendingUse{link, std::move(open), now, fmt::format("{} of {}", skill.name, name()),
                       std::move(origin)};

@@ -239,6 +239,18 @@ Answer<> Client::writeAsync(WriteItem item, std::function<void(Answer<>)> done, 
                       });
 }
 
+Answer<> Client::writeManyAsync(std::vector<WriteItem> items,
+                                std::function<void(Answer<std::vector<StatusCode>>)> done,
+                                Timeout timeout) {
+    return startWrite(*core_, std::move(items), core_->deadline(timeout), std::move(done));
+}
+
+Answer<> Client::readManyAsync(std::vector<ReadItem> items,
+                               std::function<void(Answer<std::vector<DataValue>>)> done,
+                               Timeout timeout) {
+    return startRead(*core_, std::move(items), core_->deadline(timeout), std::move(done));
+}
+
 Answer<> Client::callAsync(MethodCall method_call, std::function<void(Answer<CallResult>)> done,
                            Timeout timeout) {
     return startCall(*core_, std::move(method_call), core_->deadline(timeout), std::move(done));

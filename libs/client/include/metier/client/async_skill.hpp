@@ -21,6 +21,10 @@ namespace metier::client {
 ///     auto skill = AsyncSkill::open(client, address, {.on_transition = noteTransition});
 ///     skill->startWith({.parameters = values}, [](opcua::Answer<std::string> id) { ... });
 ///
+/// A skill that knows no executions (OPC 10000-10 has none) is started by writes and Start, and
+/// what it does then is taken for the execution that was started here. Its transitions carry no id;
+/// on_missed follows each, so that its owner asks.
+///
 /// Only open(), now() and the destructor wait. Each `done` is called once, at the latest at the
 /// client's time-out, even after this object has ended; it is not called if the request itself
 /// returns an error.
@@ -66,7 +70,9 @@ public:
     /// otherwise.
     const skill::SkillDescription& description() const noexcept;
 
-    /// Whether the server supports named executions: startWith() and execution().
+    /// Whether the server itself names executions. If it does not, another client's execution
+    /// cannot be told from one that was started here, and the server does not halt it when this
+    /// client is lost.
     bool knowsExecutions() const noexcept;
 
     /// Present state of the skill.
@@ -82,14 +88,18 @@ public:
     /// Errors: connection_lost, timeout; those of the server.
     opcua::Answer<Now> now() const;
 
-    /// Sends StartWith; `done` gets the execution's id. Running has been committed then.
+    /// Sends StartWith, or writes and Start; `done` gets the execution's id. Running has been
+    /// committed then. Without StartWith `on_owner_loss` has no effect.
+    /// Errors: also not_supported, for a lease without StartWith; not_found for an unknown
+    ///         parameter.
     opcua::Answer<> startWith(const skill::StartRequest& request, Done<std::string> done) const;
     /// Calls any method but StartWith, such as Suspend; `done` gets no value. A Suspend or Halt is
     /// answered before standstill.
     opcua::Answer<> call(skill::Method method, Done<> done) const;
     /// Sends Check; `done` gets its report. Nothing moves.
     opcua::Answer<> check(const skill::ValueMap& parameters, Done<skill::CheckReport> done) const;
-    /// Sends GetExecution; `done` gets the record, or the server's not_found.
+    /// Sends GetExecution, or reads state and results; `done` gets the record, or the server's
+    /// not_found.
     opcua::Answer<> execution(const std::string& id, Done<skill::ExecutionRecord> done) const;
 
 private:

@@ -351,6 +351,15 @@ public:
     /// on the client's thread. Writes are sent in the order of these calls.
     /// Errors: connection_lost, returned at once; then `done` is not called.
     Answer<> writeAsync(WriteItem item, std::function<void(Answer<>)> done, Timeout timeout = {});
+    /// Writes several values in one request without waiting; as writeAsync(), `done` gets one
+    /// StatusCode per item, in order.
+    Answer<> writeManyAsync(std::vector<WriteItem> items,
+                            std::function<void(Answer<std::vector<StatusCode>>)> done,
+                            Timeout timeout = {});
+    /// Reads without waiting; as writeAsync(), `done` gets one DataValue per item, in order.
+    Answer<> readManyAsync(std::vector<ReadItem> items,
+                           std::function<void(Answer<std::vector<DataValue>>)> done,
+                           Timeout timeout = {});
     /// Calls a Method without waiting; as writeAsync().
     Answer<> callAsync(MethodCall method_call, std::function<void(Answer<CallResult>)> done,
                        Timeout timeout = {});

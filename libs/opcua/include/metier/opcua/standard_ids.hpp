@@ -35,6 +35,7 @@ inline const NodeId kBaseDataVariableType{0, 63U};
 inline const NodeId kPropertyType{0, 68U};
 inline const NodeId kBaseEventType{0, 2041U};
 inline const NodeId kProgramStateMachineType{0, 2391U};
+inline const NodeId kTransitionEventType{0, 2311U};
 inline const NodeId kProgramTransitionEventType{0, 2378U};
 inline const NodeId kSystemEventType{0, 2130U};
 inline const NodeId kAuditEventType{0, 2052U};

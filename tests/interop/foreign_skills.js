@@ -1,0 +1,203 @@
+// A server of another maker with Programs (OPC 10000-10) that know nothing of metier: no StartWith,
+// no Check, no lease, no ExecutionId. Prints "ready URL" and runs until it is ended.
+'use strict';
+
+console.log = console.error;  // what node-opcua says; the standard output is for "ready URL"
+const {
+  DataType, OPCUAServer, StatusCodes, coerceNodeId, coerceQualifiedName,
+} = require('node-opcua');
+const { freePort } = require('./free_port');
+
+const kStates = {
+  Halted: { id: 2406, number: 11 },
+  Ready: { id: 2400, number: 12 },
+  Running: { id: 2402, number: 13 },
+  Suspended: { id: 2404, number: 14 },
+};
+const kTransitions = {
+  HaltedToReady: { id: 2408, number: 1 },
+  ReadyToRunning: { id: 2410, number: 2 },
+  RunningToHalted: { id: 2412, number: 3 },
+  RunningToReady: { id: 2414, number: 4 },
+  RunningToSuspended: { id: 2416, number: 5 },
+  SuspendedToRunning: { id: 2418, number: 6 },
+  SuspendedToHalted: { id: 2420, number: 7 },
+  SuspendedToReady: { id: 2422, number: 8 },
+  ReadyToHalted: { id: 2424, number: 9 },
+};
+const kMethods = ['Start', 'Suspend', 'Resume', 'Halt', 'Reset'];
+
+const nodeId = (id) => ({ dataType: DataType.NodeId, value: coerceNodeId(`ns=0;i=${id}`) });
+const number = (value) => ({ dataType: DataType.UInt32, value });
+const text = (value) => ({ dataType: DataType.LocalizedText, value: { text: value } });
+
+/**
+ * A Program that waits for Duration [s] and then says how often it did.
+ *
+ * @typedef {object} Shape
+ * @property {string} name
+ * @property {string[]} methods that it has
+ * @property {string|null} event the type of its events; null: none
+ * @property {boolean} numbers whether its state has a number; its events have none in namespace 0
+ * @property {boolean} ids whether states and transitions have NodeIds
+ */
+class ForeignProgram {
+  /** @param {Shape} shape */
+  constructor(space, parent, shape) {
+    this.space = space;
+    this.shape = shape;
+    this.state = 'Ready';
+    this.count = 0;
+    const namespace = space.getOwnNamespace();
+    this.object = namespace.addObject({
+      browseName: shape.name,
+      componentOf: parent,
+      typeDefinition: space.findObjectType('ProgramStateMachineType'),
+      eventSourceOf: shape.event ? space.rootFolder.objects.server : undefined,
+      eventNotifier: shape.event ? 1 : 0,
+    });
+    this.current = this.addStateVariable('CurrentState', 'FiniteStateVariableType');
+    this.last = this.addStateVariable('LastTransition', 'FiniteTransitionVariableType');
+    for (const method of shape.methods) {
+      namespace
+        .addMethod(this.object, { browseName: coerceQualifiedName(`0:${method}`), inputArguments: [] })
+        .bindMethod((_inputs, _context, done) => done(null, { statusCode: this.call(method) }));
+    }
+    this.duration = this.addField('ParameterSet', 'Duration', DataType.Double, 0.05);
+    this.fails = this.addField('ParameterSet', 'Fails', DataType.Boolean, false);
+    this.result = this.addField('FinalResultData', 'Count', DataType.UInt32, 0);
+    this.show();
+  }
+
+  addStateVariable(name, type) {
+    const namespace = this.space.getOwnNamespace();
+    const variable = namespace.addVariable({
+      browseName: coerceQualifiedName(`0:${name}`),
+      componentOf: this.object,
+      dataType: 'LocalizedText',
+      typeDefinition: type,
+    });
+    const property = (propertyName, dataType) =>
+      namespace.addVariable({
+        browseName: coerceQualifiedName(`0:${propertyName}`),
+        propertyOf: variable,
+        dataType,
+      });
+    return {
+      variable,
+      id: this.shape.ids ? property('Id', 'NodeId') : null,
+      number: this.shape.numbers ? property('Number', 'UInt32') : null,
+    };
+  }
+
+  addField(folder, name, dataType, value) {
+    const namespace = this.space.getOwnNamespace();
+    const parent =
+      this.object.getComponentByName(folder) ??
+      namespace.addObject({ browseName: folder, componentOf: this.object });
+    return namespace.addVariable({
+      browseName: name,
+      componentOf: parent,
+      dataType,
+      minimumSamplingInterval: 10,
+      value: { dataType, value },
+    });
+  }
+
+  setStateVariable({ variable, id, number: property }, name, known) {
+    variable.setValueFromSource(text(name));
+    id?.setValueFromSource(nodeId(known.id));
+    property?.setValueFromSource(number(known.number));
+  }
+
+  show() {
+    this.setStateVariable(this.current, this.state, kStates[this.state]);
+  }
+
+  /** @returns {import('node-opcua').StatusCode} */
+  call(method) {
+    const possible = {
+      Start: ['Ready', 'Running'],
+      Suspend: ['Running', 'Suspended'],
+      Resume: ['Suspended', 'Running'],
+      Halt: [this.state === 'Halted' ? 'none' : this.state, 'Halted'],
+      Reset: ['Halted', 'Ready'],
+    }[method];
+    if (this.state !== possible[0]) {
+      return StatusCodes.BadInvalidState;
+    }
+    clearTimeout(this.timer);
+    this.go(possible[1], method);
+    if (this.state === 'Running') {
+      this.timer = setTimeout(() => this.end(), 1000 * this.duration.readValue().value.value);
+    }
+    return StatusCodes.Good;
+  }
+
+  end() {
+    if (this.fails.readValue().value.value) {
+      this.go('Halted', 'the lamp is broken');
+      return;
+    }
+    this.count += 1;
+    this.result.setValueFromSource({ dataType: DataType.UInt32, value: this.count });
+    this.go('Ready', 'done');
+  }
+
+  go(to, message) {
+    const from = this.state;
+    const transition = `${from}To${to}`;
+    this.state = to;
+    this.show();
+    this.setStateVariable(this.last, transition, kTransitions[transition]);
+    if (this.shape.event) {
+      this.object.raiseEvent(this.shape.event, this.fieldsOf(transition, from, to, message));
+    }
+  }
+
+  fieldsOf(transition, from, to, message) {
+    const fields = {
+      message: text(message),
+      severity: { dataType: DataType.UInt16, value: 100 },
+      transition: text(transition),
+      fromState: text(from),
+      toState: text(to),
+    };
+    if (this.shape.ids) {
+      fields['transition.id'] = nodeId(kTransitions[transition].id);
+      fields['fromState.id'] = nodeId(kStates[from].id);
+      fields['toState.id'] = nodeId(kStates[to].id);
+    }
+    return fields;
+  }
+}
+
+/** One Program per way in which servers differ. */
+const kShapes = [
+  { name: 'Whole', methods: kMethods, event: 'ProgramTransitionEventType', numbers: true, ids: true },
+  { name: 'WithoutNumbers', methods: kMethods, event: 'ProgramTransitionEventType', numbers: false, ids: true },
+  { name: 'PlainEvents', methods: kMethods, event: 'TransitionEventType', numbers: false, ids: true },
+  { name: 'WithoutEvents', methods: kMethods, event: null, numbers: true, ids: true },
+  { name: 'NamesOnly', methods: kMethods, event: 'TransitionEventType', numbers: false, ids: false },
+  { name: 'StartAndHalt', methods: ['Start', 'Halt'], event: 'TransitionEventType', numbers: false, ids: true },
+  { name: 'StartOnly', methods: ['Start'], event: null, numbers: false, ids: true },
+];
+
+async function main() {
+  const port = await freePort();
+  const server = new OPCUAServer({ port, allowAnonymous: true });
+  await server.initialize();
+  const space = server.engine.addressSpace;
+  const namespace = space.getOwnNamespace();
+  const lamp = namespace.addObject({ browseName: 'Lamp', organizedBy: space.rootFolder.objects });
+  const skills = namespace.addObject({ browseName: 'Skills', componentOf: lamp });
+  kShapes.forEach((shape) => new ForeignProgram(space, skills, shape));
+  await server.start();
+  process.once('SIGTERM', () => server.shutdown(() => process.exit(0)));
+  process.stdout.write(`ready opc.tcp://127.0.0.1:${port}\n`);
+}
+
+main().catch((error) => {
+  process.stderr.write(`${error.stack}\n`);
+  process.exit(1);
+});

@@ -1,0 +1,188 @@
+// Commands of metier on Programs of another maker, which have only what OPC 10000-10 makes mandatory,
+// and less.
+'use strict';
+
+const assert = require('node:assert');
+const fs = require('node:fs');
+const os = require('node:os');
+const path = require('node:path');
+const { after, before, test } = require('node:test');
+const { runMetier, startProcess, startServer } = require('./metier_process');
+
+const kProgram = path.join(__dirname, 'foreign_skills.js');
+const kLostConnection = 3;
+
+let server;
+
+before(async () => {
+  server = await startProcess(process.execPath, [kProgram]);
+});
+
+after(() => server?.stop());
+
+const run = (skill, ...more) => runMetier(['run', server.url, skill, ...more]);
+
+test('list shows every Program with its state', async () => {
+  const { status, output } = await runMetier(['list', server.url]);
+  assert.strictEqual(status, 0);
+  for (const name of ['Whole', 'WithoutNumbers', 'PlainEvents', 'WithoutEvents', 'NamesOnly', 'StartAndHalt', 'StartOnly']) {
+    assert.match(output, new RegExp(`${name} +Ready`));
+  }
+});
+
+for (const skill of ['Whole', 'WithoutNumbers', 'PlainEvents', 'WithoutEvents', 'NamesOnly', 'StartAndHalt', 'StartOnly']) {
+  test(`run writes, starts, and returns the result of ${skill}`, async () => {
+    for (const count of [1, 2]) {
+      const { status, output } = await run(skill, '--set', 'Duration=0.3');
+      assert.strictEqual(status, 0, output);
+      assert.match(output, new RegExp(`Count +${count}`));
+    }
+  });
+
+  test(`run notices an end of ${skill} that comes at once`, async () => {
+    const { status, output } = await run(skill, '--set', 'Duration=0');
+    assert.strictEqual(status, 0, output);
+    assert.match(output, /Count +3/);
+  });
+}
+
+for (const skill of ['Whole', 'PlainEvents', 'WithoutEvents', 'NamesOnly']) {
+  test(`a failure of ${skill} ends run, and reset makes it Ready`, async () => {
+    const failed = await run(skill, '--set', 'Duration=0.1', '--set', 'Fails=true');
+    assert.notStrictEqual(failed.status, 0);
+    assert.match(failed.errors, new RegExp(`${skill} was halted`));
+    if (skill !== 'WithoutEvents') {
+      assert.match(failed.errors, /the lamp is broken/);
+    }
+    const refused = await run(skill);
+    assert.notStrictEqual(refused.status, 0);
+    assert.match(refused.errors, /Halted/);
+    const reset = await runMetier(['reset', server.url, skill]);
+    assert.strictEqual(reset.status, 0, reset.errors);
+    const again = await run(skill, '--set', 'Duration=0.05', '--set', 'Fails=false');
+    assert.strictEqual(again.status, 0, again.errors);
+  });
+}
+
+test('a run that takes too long is halted', async () => {
+  const late = await run('StartAndHalt', '--set', 'Duration=20', '--timeout', '0.5');
+  assert.notStrictEqual(late.status, 0);
+  assert.match((await runMetier(['list', server.url])).output, /StartAndHalt +Halted/);
+});
+
+test('what has no Halt says so', async () => {
+  const late = await run('StartOnly', '--set', 'Duration=2', '--timeout', '0.5');
+  assert.notStrictEqual(late.status, 0);
+  assert.match(late.errors, /StartOnly has no Halt/);
+  const halted = await runMetier(['halt', server.url, 'StartOnly']);
+  assert.notStrictEqual(halted.status, 0);
+  assert.match(halted.errors, /StartOnly has no Halt/);
+});
+
+test('a lease is refused where nobody would keep it', async () => {
+  const leased = await run('Whole', '--on-loss', 'halt');
+  assert.notStrictEqual(leased.status, 0);
+  assert.match(leased.errors, /Whole has no StartWith/);
+});
+
+test('a wrong type and an unknown parameter are refused before anything starts', async () => {
+  const unknown = await run('Whole', '--set', 'Speed=1');
+  assert.notStrictEqual(unknown.status, 0);
+  assert.match(unknown.errors, /Speed/);
+});
+
+/** A component that runs Programs of the server at `url`. */
+async function startComposition(url) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'foreign_skills_'));
+  const skills = ['Whole', 'WithoutEvents', 'NamesOnly'];
+  for (const skill of skills) {
+    fs.writeFileSync(path.join(folder, `${skill}.toml`), `
+name = "Use${skill}"
+[parameters.Duration]
+type = "number"
+unit = "s"
+[parameters.Fails]
+type = "boolean"
+default = false
+[results.Count]
+type = "uint32"
+from = "flash.Count"
+[uses.lamp]
+type = "${skill}Type"
+reset = true
+[[step]]
+name = "flash"
+run = "lamp"
+with.Duration = { from = "Duration" }
+with.Fails = { from = "Fails" }
+`);
+  }
+  const cell = path.join(folder, 'cell.toml');
+  fs.writeFileSync(cell, `
+name = "foreign"
+[[server]]
+name = "component"
+kind = "composition"
+compositions = [${skills.map((skill) => `"${skill}.toml"`).join(', ')}]
+servers = ["${url}"]
+stall_limit = 1.0
+`);
+  const component = await startServer(['serve', cell, '--server', 'component', '--port', '0']);
+  return { url: component.url, stop: async () => {
+    await component.stop();
+    fs.rmSync(folder, { recursive: true });
+  } };
+}
+
+test('a composition runs, halts and loses skills of another maker', async () => {
+  const lamps = await startProcess(process.execPath, [kProgram]);
+  const component = await startComposition(lamps.url);
+  try {
+    for (const skill of ['Whole', 'WithoutEvents', 'NamesOnly']) {
+      const use = (...more) => runMetier(['run', component.url, `Use${skill}`, ...more]);
+      for (const [count, duration] of [[1, 0.3], [2, 0], [3, 0.05]]) {
+        const done = await use('--set', `Duration=${duration}`);
+        assert.strictEqual(done.status, 0, done.errors);
+        assert.match(done.output, new RegExp(`Count +${count}`));
+      }
+      const failed = await use('--set', 'Duration=0.1', '--set', 'Fails=true');
+      assert.notStrictEqual(failed.status, 0);
+      assert.match(failed.errors, new RegExp(skill));
+      assert.strictEqual((await runMetier(['reset', component.url, `Use${skill}`])).status, 0);
+
+      const halted = use('--set', 'Duration=30');
+      await awaitState(lamps.url, skill, 'Running');
+      assert.strictEqual((await runMetier(['halt', component.url, '--skill', `Use${skill}`])).status, 0);
+      assert.notStrictEqual((await halted).status, 0);
+      await awaitState(lamps.url, skill, 'Halted');
+      assert.strictEqual((await runMetier(['reset', component.url, `Use${skill}`])).status, 0);
+    }
+    const lost = runMetier(['run', component.url, 'UseWhole', '--set', 'Duration=30']);
+    await awaitState(lamps.url, 'Whole', 'Running');
+    await lamps.kill();
+    const { status, errors } = await lost;
+    assert.notStrictEqual(status, 0);
+    assert.match(errors, /Whole/);
+  } finally {
+    await component.stop();
+  }
+});
+
+test('the server that dies ends run as unknown', async () => {
+  const doomed = await startProcess(process.execPath, [kProgram]);
+  const running = runMetier(['run', doomed.url, 'Whole', '--set', 'Duration=20', '--timeout', '15']);
+  await awaitState(doomed.url, 'Whole', 'Running');
+  await doomed.kill();
+  const { status, errors } = await running;
+  assert.strictEqual(status, kLostConnection, errors);
+});
+
+async function awaitState(url, skill, state) {
+  const deadline = Date.now() + 10000;
+  while (Date.now() < deadline) {
+    if (new RegExp(`${skill} +${state}`).test((await runMetier(['list', url])).output)) {
+      return;
+    }
+  }
+  throw new Error(`${skill} is not ${state}`);
+}
