@@ -32,31 +32,15 @@ void valueArrived(UA_Client* /*client*/, UA_UInt32 /*subscription*/, void* /*con
     static_cast<std::vector<DataValue>*>(context)->push_back(fromNative(*value));
 }
 
-/// The select clauses for some paths; borrows them.
-class Selection {
-public:
-    explicit Selection(const std::vector<BrowsePath>& fields) : names_(fields.size()) {
-        for (std::size_t i = 0; i < fields.size(); ++i) {
-            for (const auto& name : fields[i]) {
-                names_[i].push_back(viewOf(name));
-            }
-            UA_SimpleAttributeOperand operand{};
-            operand.typeDefinitionId = viewOf(ids::kBaseEventType);
-            operand.attributeId = UA_ATTRIBUTEID_VALUE;
-            operand.browsePath = names_[i].data();
-            operand.browsePathSize = names_[i].size();
-            operands_.push_back(operand);
-        }
-        filter_.selectClauses = operands_.data();
-        filter_.selectClausesSize = operands_.size();
+BareClient::FilterResult resultOf(const UA_MonitoredItemCreateResult& result) {
+    BareClient::FilterResult answer{StatusCode(result.statusCode), {}, result.monitoredItemId};
+    const auto* details =
+        decodedAs<UA_EventFilterResult>(result.filterResult, UA_TYPES[UA_TYPES_EVENTFILTERRESULT]);
+    for (std::size_t i = 0; details != nullptr && i < details->selectClauseResultsSize; ++i) {
+        answer.clauses.emplace_back(details->selectClauseResults[i]);
     }
-    UA_EventFilter& filter() { return filter_; }
-
-private:
-    std::vector<std::vector<UA_QualifiedName>> names_;
-    std::vector<UA_SimpleAttributeOperand> operands_;
-    UA_EventFilter filter_{};
-};
+    return answer;
+}
 
 }  // namespace
 
@@ -76,6 +60,12 @@ BareClient::~BareClient() {
 
 StatusCode BareClient::connect(const std::string& url) {
     return StatusCode(UA_Client_connect(client_, url.c_str()));
+}
+
+StatusCode BareClient::connectAs(const std::string& user, const std::string& password,
+                                 const std::string& url) {
+    return StatusCode(
+        UA_Client_connectUsername(client_, url.c_str(), user.c_str(), password.c_str()));
 }
 
 void BareClient::disconnect() {
@@ -160,20 +150,28 @@ double BareClient::subscribe(double publishing_interval_ms) {
 
 StatusCode BareClient::watchEvents(const NodeId& notifier, const std::vector<BrowsePath>& fields,
                                    std::vector<ReceivedEvent>& into) {
-    Selection selection(fields);
+    BareFilter filter;
+    for (const auto& path : fields) {
+        filter.select({ids::kBaseEventType, path});
+    }
+    return watchEvents(notifier, filter, into).status;
+}
+
+BareClient::FilterResult BareClient::watchEvents(const NodeId& notifier, BareFilter& filter,
+                                                 std::vector<ReceivedEvent>& into) {
     UA_MonitoredItemCreateRequest item{};
     item.itemToMonitor.nodeId = viewOf(notifier);
     item.itemToMonitor.attributeId = UA_ATTRIBUTEID_EVENTNOTIFIER;
     item.monitoringMode = UA_MONITORINGMODE_REPORTING;
     item.requestedParameters.queueSize = 10'000;
     item.requestedParameters.discardOldest = true;
-    UA_ExtensionObject_setValueNoDelete(&item.requestedParameters.filter, &selection.filter(),
+    UA_ExtensionObject_setValueNoDelete(&item.requestedParameters.filter, &filter.native(),
                                         &UA_TYPES[UA_TYPES_EVENTFILTER]);
     Owned<UA_MonitoredItemCreateResult> result(
         UA_Client_MonitoredItems_createEvent(client_, subscription_, UA_TIMESTAMPSTORETURN_BOTH,
                                              item, &into, eventArrived, nullptr),
         UA_TYPES[UA_TYPES_MONITOREDITEMCREATERESULT]);
-    return StatusCode(result->statusCode);
+    return resultOf(*result);
 }
 
 StatusCode BareClient::watchValue(const NodeId& variable, double sampling_ms,

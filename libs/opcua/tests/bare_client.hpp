@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bare_filter.hpp"
 #include "metier/opcua/event_emitter.hpp"
 #include "metier/opcua/server.hpp"
 
@@ -29,6 +30,8 @@ public:
     BareClient& operator=(const BareClient&) = delete;
 
     StatusCode connect(const std::string& url);
+    StatusCode connectAs(const std::string& user, const std::string& password,
+                         const std::string& url);
     void disconnect();
     /// Closes the connection and leaves the session to its time-out.
     void breakConnection();
@@ -50,6 +53,14 @@ public:
     /// Selects fields of BaseEventType and its subtypes by path.
     StatusCode watchEvents(const NodeId& notifier, const std::vector<BrowsePath>& fields,
                            std::vector<ReceivedEvent>& into);
+    /// Answer to an event filter.
+    struct FilterResult {
+        StatusCode status;
+        std::vector<StatusCode> clauses;  ///< one per select clause if the filter is refused
+        std::uint32_t item = 0;           ///< its MonitoredItemId if not
+    };
+    FilterResult watchEvents(const NodeId& notifier, BareFilter& filter,
+                             std::vector<ReceivedEvent>& into);
     StatusCode watchValue(const NodeId& variable, double sampling_ms, std::vector<DataValue>& into);
     /// Handles what comes until `done` or the deadline. \return done
     bool runUntil(const std::function<bool()>& done,

@@ -8,6 +8,7 @@
 #include "common/guard.hpp"
 #include "common/security_config.hpp"
 #include "metier/opcua/text.hpp"
+#include "server/event_types.hpp"
 #include "server/nodesets.hpp"
 #include "server/server_config.hpp"
 
@@ -136,6 +137,7 @@ Result<> ServerCore::build() {
     timers_ = std::make_shared<PendingTimers>(
         native(), [this](const std::function<void()>& work) { runGuarded(work); });
     METIER_TRY(loadNodesets(native(), options_.nodesets));
+    METIER_TRY(inheritEventFields(native(), nodes_));
     for (const auto& uri : options_.namespaces) {
         UA_Server_addNamespace(native(), uri.c_str());
     }
