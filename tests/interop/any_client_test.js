@@ -3,14 +3,15 @@
 'use strict';
 
 const assert = require('node:assert');
+const { once } = require('node:events');
 const fs = require('node:fs');
 const os = require('node:os');
 const path = require('node:path');
 const { after, before, test } = require('node:test');
 const {
-  AttributeIds, BrowseDirection, ClientMonitoredItem, ClientSubscription, DataType, MessageSecurityMode,
-  NodeClass, OPCUAClient, SecurityPolicy, StatusCodes, TimestampsToReturn, VariantArrayType,
-  constructEventFilter, resolveNodeId,
+  AttributeIds, BrowseDirection, ClientMonitoredItem, ClientSubscription, DataType, EventFilter,
+  MessageSecurityMode, NodeClass, OPCUAClient, SecurityPolicy, SimpleAttributeOperand, StatusCodes,
+  TimestampsToReturn, UserTokenType, VariantArrayType, constructEventFilter, ofType, resolveNodeId,
 } = require('node-opcua');
 const { runMetier, startServer } = require('./metier_process');
 
@@ -157,6 +158,45 @@ async function collectEvents(subscription, nodeId) {
   return { events, until };
 }
 
+/** Names on the way from a type to each of its fields, those of the types above included. */
+async function fieldsOf(type, path = []) {
+  const fields = [];
+  for (const reference of await children(type)) {
+    if (reference.nodeClass === NodeClass.Variable) {
+      const names = [...path, reference.browseName];
+      fields.push(names, ...await fieldsOf(reference.nodeId, names));
+    }
+  }
+  if (path.length > 0) {
+    return fields;
+  }
+  const above = await session.browse({
+    nodeId: type, referenceTypeId: 'HasSubtype', browseDirection: BrowseDirection.Inverse, resultMask: 63 });
+  return above.references.length === 0 || type.toString() === resolveNodeId('BaseEventType').toString()
+    ? fields : [...fields, ...await fieldsOf(above.references[0].nodeId)];
+}
+
+/** What arrives at a notifier, a Map of field to value each; `first()` waits for it with a deadline. */
+async function selectAll(subscription, nodeId, type, fields) {
+  const filter = new EventFilter({
+    selectClauses: fields.map((browsePath) => new SimpleAttributeOperand({
+      typeDefinitionId: type, browsePath, attributeId: AttributeIds.Value })),
+    whereClause: ofType(type),
+  });
+  const item = ClientMonitoredItem.create(
+    subscription, { nodeId, attributeId: AttributeIds.EventNotifier },
+    { samplingInterval: 0, discardOldest: true, queueSize: 100, filter }, TimestampsToReturn.Both);
+  const arrived = once(item, 'changed');
+  await Promise.race([once(item, 'initialized'), once(item, 'err').then(([why]) => { throw new Error(why); })]);
+  return {
+    first: async () => {
+      const [values] = await Promise.race([arrived, once(AbortSignal.timeout(kEventDeadlineMs), 'abort')
+        .then(() => { throw new Error(`no event of ${type}`); })]);
+      return new Map(fields.map((path, i) => [path.map((name) => name.name).join('/'), values[i].value]));
+    },
+  };
+}
+
 test('a skill is found by browsing from Objects alone', async () => {
   const programs = await findPrograms(await deviceSet());
   assert.deepStrictEqual([...programs.keys()].sort(), [
@@ -264,4 +304,40 @@ test('a bad parameter is refused in the write, and the skill stays usable', asyn
   assert.strictEqual(await write({ dataType: DataType.String, value: 'home' }), StatusCodes.BadTypeMismatch);
   assert.strictEqual(await callMethod(skill.nodeId, 'Halt'), StatusCodes.Good);
   assert.strictEqual(await callMethod(skill.nodeId, 'Reset'), StatusCodes.Good);
+});
+
+test('every field of an event is selected by the type of the event, those of the types above too', async () => {
+  const skill = (await findPrograms(await deviceSet())).get('JointPtpMoveSkill');
+  const namespaces = await session.readNamespaceArray();
+  const type = `ns=${namespaces.indexOf('https://fortiss.org/UA/Device/')};i=15844`;
+  const fields = await fieldsOf(resolveNodeId(type));
+  const subscription = ClientSubscription.create(session, {
+    requestedPublishingInterval: 100, requestedLifetimeCount: 1000, requestedMaxKeepAliveCount: 10,
+    maxNotificationsPerPublish: 0, publishingEnabled: true, priority: 1,
+  });
+  const selected = await selectAll(subscription, skill.nodeId, resolveNodeId(type), fields);
+  assert.strictEqual(await callMethod(skill.nodeId, 'Halt'), StatusCodes.Good);
+  const event = await selected.first();
+  await subscription.terminate();
+  assert.strictEqual(await callMethod(skill.nodeId, 'Reset'), StatusCodes.Good);
+  assert.strictEqual(event.get('EventType').toString(), type);
+  assert.strictEqual(event.get('SourceNode').toString(), skill.nodeId.toString());
+  assert.strictEqual(event.get('SourceName'), 'JointPtpMoveSkill');
+  assert.strictEqual(event.get('FromState').text, 'Ready');
+  assert.strictEqual(event.get('FromState/Number'), 12);
+  assert.strictEqual(event.get('ToState').text, 'Halted');
+  assert.strictEqual(event.get('Transition').text, 'ReadyToHalted');
+  assert.strictEqual(event.get('Transition/Number'), 9);
+  for (const name of ['EventId', 'Time', 'ReceiveTime', 'Message', 'Severity', 'Transition/Id',
+    'Transition/TransitionTime', 'FromState/Id', 'ToState/Id', 'ExecutionId', 'Reason', 'ReasonText']) {
+    assert.ok(event.has(name) && event.get(name) !== null, name);
+  }
+});
+
+test('a lab lets a client in that always sends a user name', async () => {
+  const named = await client.createSession({
+    type: UserTokenType.UserName, userName: 'line 4', password: 'whatever' });
+  const state = await named.read({ nodeId: 'ns=0;i=2259', attributeId: AttributeIds.Value });
+  assert.strictEqual(state.statusCode, StatusCodes.Good);
+  await named.close();
 });

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "bare_client.hpp"
+#include "metier/opcua/discovery.hpp"
 
 namespace metier::opcua {
 namespace {
@@ -20,6 +21,7 @@ using ::testing::HasSubstr;
 using testing::kDeadline;
 using testing::makeServer;
 using testing::testOptions;
+using ::testing::UnorderedElementsAre;
 using namespace std::chrono_literals;
 
 TEST(Server, ServesClientsOnAFreePort) {
@@ -103,6 +105,52 @@ TEST(Server, LoadsTheSkillModelAndARobot) {
     EXPECT_FALSE(nodes.namespaceIndex("https://fortiss.org/UA/edo/"));
     EXPECT_GT(*nodes.namespaceIndex("urn:metier:test:a"),
               *nodes.namespaceIndex("https://fortiss.org/UA/iiwa/"));
+}
+
+/// User and role under which a Method sees its caller.
+struct Caller {
+    std::string user = "nobody";
+    security::Role role = security::Role::observer;
+};
+
+Caller callerSeenAs(const std::string& user, const std::string& password) {
+    const auto server = makeServer();
+    Caller seen;
+    const NodeId method(2, "Who");
+    EXPECT_TRUE(server->nodes().addMethod(
+        {.node = {method, ids::kObjectsFolder, ids::kHasComponent, {2, "Who"}},
+         .handler = [&](const CallContext& context,
+                        std::span<const Value>) -> Result<std::vector<Value>> {
+             seen = {context.session.user, context.session.role};
+             return std::vector<Value>();
+         }}));
+    EXPECT_TRUE(server->start());
+    BareClient client;
+    EXPECT_EQ(client.connectAs(user, password, server->endpointUrl()), status::kGood);
+    EXPECT_EQ(client.call(ids::kObjectsFolder, method, {}).status, status::kGood);
+    client.disconnect();
+    return seen;
+}
+
+TEST(LabServer, TakesAnyUserForItsAnonymousOne) {
+    for (const auto* user : {"line 4", ""}) {
+        for (const auto* password : {"whatever", ""}) {
+            const auto seen = callerSeenAs(user, password);
+            EXPECT_EQ(seen.user, "");
+            EXPECT_EQ(seen.role, security::Role::engineer);
+        }
+    }
+}
+
+TEST(LabServer, OffersUserNamesWithoutEncryption) {
+    const auto server = makeServer();
+    ASSERT_TRUE(server->start());
+    const auto endpoints = getEndpoints(server->endpointUrl());
+    ASSERT_TRUE(endpoints) << endpoints.error().message;
+    ASSERT_EQ(endpoints->size(), 1U);
+    EXPECT_THAT(endpoints->front().tokens,
+                UnorderedElementsAre(EndpointDescription::TokenType::anonymous,
+                                     EndpointDescription::TokenType::user_name));
 }
 
 TEST(Server, SaysLoudlyThatItIsInsecure) {
