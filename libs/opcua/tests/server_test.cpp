@@ -153,6 +153,35 @@ TEST(LabServer, OffersUserNamesWithoutEncryption) {
                                      EndpointDescription::TokenType::user_name));
 }
 
+/// Reads a Variable of the Server object as a client.
+DataValue readOfServer(std::uint32_t id) {
+    const auto server = makeServer();
+    EXPECT_TRUE(server->start());
+    BareClient client;
+    EXPECT_EQ(client.connect(server->endpointUrl()), status::kGood);
+    auto value = client.read(NodeId(0, id));
+    client.disconnect();
+    return value;
+}
+
+TEST(Server, SaysWhichProductAndVersionItIs) {
+    EXPECT_EQ(readOfServer(2261).value, Value::of("metier"));        // ProductName
+    EXPECT_EQ(readOfServer(2262).value, Value::of("urn:metier"));    // ProductUri
+    EXPECT_EQ(readOfServer(2263).value, Value::of("metier"));        // ManufacturerName
+    EXPECT_EQ(readOfServer(2264).value, Value::of(METIER_VERSION));  // SoftwareVersion
+    EXPECT_EQ(readOfServer(2265).value, Value::of(METIER_VERSION));  // BuildNumber
+}
+
+TEST(Server, ClaimsTheProfilesThatItHas) {
+    const auto profiles = readOfServer(2269).value.as<std::vector<std::string>>();
+    ASSERT_TRUE(profiles);
+    EXPECT_THAT(*profiles,
+                UnorderedElementsAre(
+                    "http://opcfoundation.org/UA-Profile/Server/MicroEmbeddedDevice2017",
+                    "http://opcfoundation.org/UA-Profile/Server/Methods",
+                    "http://opcfoundation.org/UA-Profile/Server/StandardEventSubscription"));
+}
+
 TEST(Server, SaysLoudlyThatItIsInsecure) {
     std::ostringstream log;
     auto options = testOptions();

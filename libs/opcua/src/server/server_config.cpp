@@ -42,6 +42,9 @@ void setDescription(const ServerOptions& options, UA_ServerConfig& config) {
     replace(config.buildInfo.productUri, "urn:metier");
     replace(config.buildInfo.manufacturerName, "metier");
     replace(config.buildInfo.productName, "metier");
+    replace(config.buildInfo.softwareVersion, METIER_VERSION);
+    replace(config.buildInfo.buildNumber, METIER_VERSION);
+    config.buildInfo.buildDate = 0;  // the stack's is the time of the server's start
 }
 
 void setDiscovery(const DiscoveryService& discovery, UA_ServerConfig& config) {
@@ -124,6 +127,13 @@ Result<> checkSecurity(const ServerOptions& options) {
 std::string endpointUrlOf(const std::string& address, std::uint16_t port) {
     const bool six = address.find(':') != std::string::npos;
     return fmt::format("opc.tcp://{}{}{}:{}", six ? "[" : "", address, six ? "]" : "", port);
+}
+
+std::vector<std::string> profilesOf(const ServerOptions& options) {
+    return {options.security ? "http://opcfoundation.org/UA-Profile/Server/EmbeddedUA2017"
+                             : "http://opcfoundation.org/UA-Profile/Server/MicroEmbeddedDevice2017",
+            "http://opcfoundation.org/UA-Profile/Server/Methods",
+            "http://opcfoundation.org/UA-Profile/Server/StandardEventSubscription"};
 }
 
 Result<> checkOptions(const ServerOptions& options) {

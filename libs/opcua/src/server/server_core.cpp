@@ -142,6 +142,8 @@ Result<> ServerCore::build() {
         UA_Server_addNamespace(native(), uri.c_str());
     }
     METIER_TRY(stack_methods_.guard(native()));
+    METIER_TRY(nodes_.write(NodeId(0, UA_NS0ID_SERVER_SERVERCAPABILITIES_SERVERPROFILEARRAY),
+                            Value::of(profilesOf(options_))));
     // Certificates of others, and who they are.
     UA_Server_setNodeContext(
         native(),
