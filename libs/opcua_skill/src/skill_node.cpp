@@ -150,7 +150,7 @@ DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
         case NodeKind::transition_id:
         case NodeKind::transition_number:
         case NodeKind::transition_time:
-            return {readTransition(node_role), {}, program_->diagnostic().last_transition_time};
+            return readTransition(node_role);
         case NodeKind::sub_state:
         case NodeKind::sub_state_id:
         case NodeKind::sub_state_number:
@@ -158,7 +158,7 @@ DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
         case NodeKind::parameter:
             return {readParameter(node_role)};
         case NodeKind::result:
-            return {readResult(node_role)};
+            return readResult(node_role);
         case NodeKind::diagnostic:
             return {diagnosticItems()[node_role.detail].read(toOpcua(program_->diagnostic()))};
         case NodeKind::reason_text:
@@ -203,17 +203,20 @@ Value SkillNode::readState(NodeRole node_role) const {
     }
 }
 
-Value SkillNode::readTransition(NodeRole node_role) const {
+DataValue SkillNode::readTransition(NodeRole node_role) const {
     const auto& last = program_->lastTransition();
+    // As a sub-state: a Bad status comes with a value all the same.
+    const auto status = last ? opcua::StatusCode() : opcua::status::kBadNoData;
+    const auto time = program_->diagnostic().last_transition_time;
     switch (node_role.kind) {
         case NodeKind::transition_id:
-            return Value::of(last ? transitionId(last->number) : NodeId());
+            return {Value::of(last ? transitionId(last->number) : NodeId()), status, time};
         case NodeKind::transition_number:
-            return Value::of(last ? static_cast<std::uint32_t>(last->number) : 0U);
+            return {Value::of(last ? static_cast<std::uint32_t>(last->number) : 0U), status, time};
         case NodeKind::transition_time:
-            return Value::of(last ? last->time : UtcTime::min());
+            return {Value::of(last ? last->time : UtcTime::min()), status, time};
         default:
-            return Value::of(last ? textOf(last->number) : LocalizedText());
+            return {Value::of(last ? textOf(last->number) : LocalizedText()), status, time};
     }
 }
 
@@ -238,10 +241,12 @@ Value SkillNode::readParameter(NodeRole node_role) const {
     return value ? partOf(*value, partIn(node_role)) : Value();
 }
 
-Value SkillNode::readResult(NodeRole node_role) const {
+DataValue SkillNode::readResult(NodeRole node_role) const {
     const auto& result = program_->finalResult();
     const auto found = result.find(fieldOf(*program_, node_role).name);
-    return found == result.end() ? Value() : partOf(found->second, partIn(node_role));
+    auto value = found == result.end() ? Value() : partOf(found->second, partIn(node_role));
+    const auto status = value.isEmpty() ? opcua::status::kBadNoData : opcua::StatusCode();
+    return {std::move(value), status};
 }
 
 Result<void> SkillNode::write(const opcua::WriteContext& writer, std::uint32_t tag,

@@ -99,10 +99,12 @@ private:
     std::vector<opcua::KeyValue> pairsOf(const skill::ValueMap& values) const;
     std::string readReason(const opcua::Session& session) const;
     opcua::Value readState(NodeRole node_role) const;
-    opcua::Value readTransition(NodeRole node_role) const;
+    /// BadNoData before the first transition.
+    opcua::DataValue readTransition(NodeRole node_role) const;
     opcua::DataValue readSubState(NodeRole node_role) const;
     opcua::Value readParameter(NodeRole node_role) const;
-    opcua::Value readResult(NodeRole node_role) const;
+    /// BadNoData before the first finished execution, and for a result that the last one lacks.
+    opcua::DataValue readResult(NodeRole node_role) const;
     Result<void> remember(const opcua::Session& session, Result<void> outcome);
 
     opcua::NodeId id_;

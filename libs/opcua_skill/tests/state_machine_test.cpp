@@ -61,6 +61,17 @@ TEST_F(StateMachine, BeginsReady) {
     EXPECT_EQ(readAs<opcua::NodeId>(*client_, skill_, "CurrentState/Id"), opcua::NodeId(0, 2400U));
 }
 
+TEST_F(StateMachine, HasNoTransitionAndNoResultBeforeTheFirst) {
+    for (const auto* path : {"LastTransition", "LastTransition/Id", "LastTransition/Number",
+                             "LastTransition/TransitionTime", "FinalResultData/Duration",
+                             "FinalResultData/ReachedJointPosition"}) {
+        EXPECT_EQ(read(*client_, skill_, path), "BadNoData") << path;
+    }
+    halt();
+    EXPECT_EQ(readAs<std::uint32_t>(*client_, skill_, "LastTransition/Number"), 9U);
+    EXPECT_EQ(read(*client_, skill_, "FinalResultData/Duration"), "BadNoData");
+}
+
 TEST_F(StateMachine, RefusesInReadyWhatReadyDoesNotAllow) {
     EXPECT_EQ(refusals({"Suspend", "Resume", "Reset"}),
               "Suspend BadInvalidState; Resume BadInvalidState; Reset BadInvalidState; ");
