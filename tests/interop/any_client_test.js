@@ -332,6 +332,7 @@ test('every field of an event is selected by the type of the event, those of the
     'Transition/TransitionTime', 'FromState/Id', 'ToState/Id', 'ExecutionId', 'Reason', 'ReasonText']) {
     assert.ok(event.has(name) && event.get(name) !== null, name);
   }
+  assert.strictEqual(event.get('LocalTime'), null);  // optional, and not there
 });
 
 test('a lab lets a client in that always sends a user name', async () => {

@@ -219,7 +219,7 @@ TEST_F(EventFilterTest, DeliversTheSameValuesWhicheverTypeSelectsThem) {
         EXPECT_EQ(events[0][2], Value::of(std::uint16_t{321}));
         EXPECT_EQ(events[0][3], Value::of(LocalizedText{"en", "raised"}));
         EXPECT_EQ(events[0][4], Value::of(std::uint32_t{0}));
-        EXPECT_EQ(events[0][5], Value()) << "optional, and not there";
+        EXPECT_EQ(events[0][5].toString(), "[]") << "optional, and not there";
     }
 }
 
@@ -274,6 +274,23 @@ TEST_P(WhereClause, NegatesIt) {
     filter_.where(UA_FILTEROPERATOR_NOT, {Element{1}});
     filter_.where(UA_FILTEROPERATOR_EQUALS, {severity(), Value::of(std::uint16_t{200})});
     EXPECT_THAT(namesThatPass(filter_), ElementsAre("SkillTransitionEventType", "SystemEventType"));
+}
+
+TEST_P(WhereClause, ComparesNoFieldThatTheEventLacks) {
+    const Field absent{ids::kAuditEventType, {{0, "ServerId"}}};
+    filter_.where(UA_FILTEROPERATOR_OR, {Element{1}, Element{2}});
+    filter_.where(UA_FILTEROPERATOR_EQUALS, {severity(), Value::of(std::uint16_t{300})});
+    filter_.where(UA_FILTEROPERATOR_OR, {Element{3}, Element{4}});
+    filter_.where(UA_FILTEROPERATOR_EQUALS, {absent, Value::of("nobody")});
+    filter_.where(UA_FILTEROPERATOR_EQUALS, {Value::of("nobody"), absent});
+    EXPECT_THAT(namesThatPass(filter_), ElementsAre("SystemEventType"));
+}
+
+TEST_P(WhereClause, OrsAFieldThatTheEventLacks) {
+    filter_.where(UA_FILTEROPERATOR_OR, {Element{1}, Field{ids::kAuditEventType, {{0, "Status"}}}});
+    filter_.where(UA_FILTEROPERATOR_GREATERTHAN, {severity(), Value::of(std::uint16_t{150})});
+    EXPECT_THAT(namesThatPass(filter_),
+                ElementsAre("ProgramTransitionEventType", "SystemEventType"));
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEachType, WhereClause,

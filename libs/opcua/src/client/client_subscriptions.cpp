@@ -64,6 +64,11 @@ Answer<> createdAs(const ItemRequest& request, const UA_MonitoredItemCreateResul
                           : Answer<>();
 }
 
+/// Whether a field is an array of no length, by which our servers and others say that it is absent.
+bool isNullArray(const UA_Variant& field) noexcept {
+    return field.type != nullptr && field.data == nullptr;
+}
+
 /// The stack's form of an EventFilter; a view of it, as long as both live and do not move.
 class NativeEventFilter {
 public:
@@ -378,7 +383,7 @@ void ClientSubscriptions::takeEvent(UA_EventFieldList& event) {
         notice.kind = EventNotice::Kind::overflow;
     } else {
         for (auto& field : all(event.eventFields, event.eventFieldsSize)) {
-            notice.fields.push_back(ValueAccess::take(field));
+            notice.fields.push_back(isNullArray(field) ? Value() : ValueAccess::take(field));
         }
         notice.fields.resize(item->filter.fields.size());  // a strange server may send others
     }

@@ -7,6 +7,7 @@
 
 #include "common/convert.hpp"
 #include "metier/opcua/server.hpp"
+#include "server/event_types.hpp"
 #include "server/server_core.hpp"
 
 namespace metier::opcua {
@@ -88,6 +89,7 @@ Result<EventEmitter> EventEmitter::create(ServerCore& core, const NodeId& type,
     if (audience == EventAudience::auditors) {
         METIER_TRY(state->hideFromOthers());
     }
+    METIER_TRY(completeFields(core.nodes(), state->node));
     return EventEmitter(std::move(state));
 }
 

@@ -16,4 +16,15 @@ namespace metier::opcua {
 /// Errors: internal (the stack).
 Result<> inheritEventFields(UA_Server* server, const AddressSpace& nodes);
 
+/// Adds a Variable for each field of any event type, out of sight of clients. For once, when all
+/// types are loaded.
+Result<> addAbsentFields(AddressSpace& nodes);
+
+/// Gives an event's node all fields of other event types, without a value.
+///
+/// The stack (1.4) clears memory that it never set if an operand of a where clause names a field
+/// that the event lacks, and crashes if the second operand of a comparison is Null. So such a field
+/// is an array of no length: no comparison with it is true, and clients show null.
+Result<> completeFields(AddressSpace& nodes, const NodeId& event);
+
 }  // namespace metier::opcua

@@ -138,6 +138,7 @@ Result<> ServerCore::build() {
         native(), [this](const std::function<void()>& work) { runGuarded(work); });
     METIER_TRY(loadNodesets(native(), options_.nodesets));
     METIER_TRY(inheritEventFields(native(), nodes_));
+    METIER_TRY(addAbsentFields(nodes_));
     for (const auto& uri : options_.namespaces) {
         UA_Server_addNamespace(native(), uri.c_str());
     }
