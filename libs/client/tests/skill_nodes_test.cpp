@@ -47,7 +47,7 @@ TEST_F(NodesOfASkill, AreThoseThatEveryProgramHasAndNoMore) {
     const auto nodes = read();
     ASSERT_TRUE(nodes) << nodes.error().message;
     EXPECT_EQ(nodes->methods[0], opcua::NodeId(1, "Move.Start"));
-    EXPECT_EQ(nodes->state_number, opcua::NodeId(1, "Move.CurrentState.Number"));
+    EXPECT_EQ(nodes->program.state_number, opcua::NodeId(1, "Move.CurrentState.Number"));
     for (const auto& none : {nodes->start_with, nodes->check, nodes->get_execution,
                              nodes->reason_text, nodes->execution_id, nodes->records}) {
         EXPECT_TRUE(none.isNull());
@@ -57,21 +57,39 @@ TEST_F(NodesOfASkill, AreThoseThatEveryProgramHasAndNoMore) {
     EXPECT_THAT(nodes->results, IsEmpty());
 }
 
-class SkillWithout : public NodesOfASkill, public ::testing::WithParamInterface<const char*> {};
-
-INSTANTIATE_TEST_SUITE_P(Methods, SkillWithout,
-                         ::testing::Values("Start", "Suspend", "Resume", "Halt", "Reset"));
-
-TEST_P(SkillWithout, AMethodOfProgramsIsNone) {
-    addMethods(GetParam());
+TEST_F(NodesOfASkill, AreNoneWithoutStart) {
+    addMethods("Start");
     addState();
-    EXPECT_THAT(problem(), HasSubstr(std::string("Move has no ") + GetParam()));
+    EXPECT_THAT(problem(), HasSubstr("Move has no Start"));
 }
 
-TEST_F(NodesOfASkill, AreNoneWithoutANumberOfItsState) {
+class SkillWithout : public NodesOfASkill, public ::testing::WithParamInterface<skill::Method> {};
+
+INSTANTIATE_TEST_SUITE_P(Methods, SkillWithout,
+                         ::testing::Values(skill::Method::suspend, skill::Method::resume,
+                                           skill::Method::halt, skill::Method::reset));
+
+TEST_P(SkillWithout, AnotherMethodHasNoNodeForIt) {
+    addMethods(toString(GetParam()));
+    addState();
+    const auto nodes = read();
+    ASSERT_TRUE(nodes) << nodes.error().message;
+    const auto missing = static_cast<std::size_t>(GetParam());
+    for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(nodes->methods.at(i).isNull(), i == missing) << i;
+    }
+}
+
+TEST_F(NodesOfASkill, NeedACurrentStateAndNothingBelowIt) {
     addMethods();
+    EXPECT_THAT(problem(), HasSubstr("Move has no CurrentState"));
     served_.variable(skill_.node, {0, "CurrentState"}, opcua::Value::of("Ready"));
-    EXPECT_THAT(problem(), HasSubstr("Move has no CurrentState/Number"));
+    const auto nodes = read();
+    ASSERT_TRUE(nodes) << nodes.error().message;
+    EXPECT_EQ(nodes->program.state, opcua::NodeId(1, "Move.CurrentState"));
+    EXPECT_TRUE(nodes->program.state_id.isNull());
+    EXPECT_TRUE(nodes->program.state_number.isNull());
+    EXPECT_TRUE(nodes->program.last.isNull());
 }
 
 TEST_F(NodesOfASkill, AreNoneOfANodeThatIsNotThere) {

@@ -202,7 +202,8 @@ Planned<JointPath> trackWithArmAngle(const TrackRequest& request, std::size_t mo
         }
         const auto off = track.too_coarse ? 0 : firstOffPath(request, places, track.knots);
         if (!off) {
-            return JointPath(request.path, std::move(places), std::move(track.knots));
+            return JointPath(request.path, std::move(places), std::move(track.knots),
+                             request.model->kinematics());
         }
         if (!may_halve) {
             return tl::unexpected(

@@ -2,12 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 
 namespace metier::motion {
 
 namespace {
 
 constexpr std::size_t kStencil = 5;
+/// Largest distance of the exact joint position from the interpolated one [rad].
+constexpr double kLargestDeviation = 1e-3;
+/// The same beside a knot, by kBesideKnot of an interval, where both begin with the same position:
+/// the speeds of the axes differ little then.
+constexpr double kLargestDeviationBesideKnot = 1e-7;
+constexpr double kBesideKnot = 0.02;
+/// Most intervals on either side of a singularity that are interpolated for it.
+constexpr std::size_t kMostBeside = 16;
 
 /// Factors of five values with which they sum up to their value and first three derivatives.
 using Weights = std::array<std::array<double, kStencil>, 4>;
@@ -69,17 +79,81 @@ PathPoint JointLine::at(double s) const noexcept {
     return point;
 }
 
-JointPath::JointPath(FlangePath flange, std::vector<double> places, std::vector<JointVector> knots)
+JointPath::JointPath(FlangePath flange, std::vector<double> places, std::vector<JointVector> knots,
+                     const Kinematics& kinematics)
     : flange_(std::move(flange)), places_(std::move(places)), knots_(std::move(knots)) {
     derivatives_.reserve(knots_.size());
     for (std::size_t k = 0; k < knots_.size(); ++k) {
         derivatives_.push_back(derivativesAt(places_, knots_, k));
     }
+    interpolated_.resize(knots_.size() - 1);
+    for (std::size_t k = 0; k < interpolated_.size(); ++k) {
+        if (passesSingularity(k, kinematics)) {
+            interpolateAround(k, kinematics);
+        }
+    }
 }
 
-PathPoint JointPath::interpolate(double s) const noexcept {
+void JointPath::interpolateAround(std::size_t interval, const Kinematics& kinematics) noexcept {
+    const auto leaves = [&](std::size_t k, double share) {
+        const double s = places_[k] + share * (places_[k + 1] - places_[k]);
+        const JointVector guess = interpolate(k, s).q;
+        const JointVector exact = exactNear(guess, s, kinematics);
+        return exact.empty() || maxDifference(exact, guess) > kLargestDeviationBesideKnot;
+    };
+    interpolated_[interval] = 1;
+    const std::size_t first = interval - std::min(interval, kMostBeside);
+    for (std::size_t k = interval; k > first && leaves(k - 1, 1 - kBesideKnot); --k) {
+        interpolated_[k - 1] = 1;
+    }
+    const std::size_t last = std::min(interval + kMostBeside, interpolated_.size() - 1);
+    for (std::size_t k = interval; k < last && leaves(k + 1, kBesideKnot); ++k) {
+        interpolated_[k + 1] = 1;
+    }
+}
+
+std::size_t JointPath::intervalOf(double s) const noexcept {
     const auto after = std::upper_bound(places_.begin() + 1, places_.end() - 1, s);
-    const auto k = static_cast<std::size_t>(after - places_.begin()) - 1;
+    return static_cast<std::size_t>(after - places_.begin()) - 1;
+}
+
+JointVector JointPath::exactNear(const JointVector& guess, double s,
+                                 const Kinematics& kinematics) const noexcept {
+    return kinematics.solutionNear(flange_.at(s), guess, flange_.armAngleAt(s));
+}
+
+double JointPath::crossingOf(std::size_t axis, std::size_t interval) const noexcept {
+    constexpr int halvings = 40;
+    double low = places_[interval];
+    double high = places_[interval + 1];
+    const bool rises = std::sin(knots_[interval][axis]) < 0;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = (low + high) / 2;
+        const bool before = (std::sin(interpolate(interval, middle).q[axis]) < 0) == rises;
+        (before ? low : high) = middle;
+    }
+    return (low + high) / 2;
+}
+
+bool JointPath::passesSingularity(std::size_t interval,
+                                  const Kinematics& kinematics) const noexcept {
+    const JointVector& from = knots_[interval];
+    const JointVector& to = knots_[interval + 1];
+    for (std::size_t axis = 0; axis < from.size(); ++axis) {
+        if ((std::sin(from[axis]) < 0) == (std::sin(to[axis]) < 0)) {
+            continue;
+        }
+        const double s = crossingOf(axis, interval);
+        const JointVector guess = interpolate(interval, s).q;
+        const JointVector exact = exactNear(guess, s, kinematics);
+        if (exact.empty() || maxDifference(exact, guess) > kLargestDeviation) {
+            return true;
+        }
+    }
+    return false;
+}
+
+PathPoint JointPath::interpolate(std::size_t k, double s) const noexcept {
     const double h = places_[k + 1] - places_[k];
     const double u = std::clamp((s - places_[k]) / h, 0.0, 1.0);
     const std::size_t axes = knots_[k].size();
@@ -101,9 +175,12 @@ PathPoint JointPath::interpolate(double s) const noexcept {
 }
 
 PathPoint JointPath::at(double s, const Kinematics& kinematics) const noexcept {
-    PathPoint point = interpolate(s);
-    const JointVector exact =
-        kinematics.solutionNear(flange_.at(s), point.q, flange_.armAngleAt(s));
+    const std::size_t interval = intervalOf(s);
+    PathPoint point = interpolate(interval, s);
+    if (interpolated_[interval] != 0) {
+        return point;
+    }
+    const JointVector exact = exactNear(point.q, s, kinematics);
     if (!exact.empty()) {
         point.q = exact;
     }

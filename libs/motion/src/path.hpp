@@ -44,27 +44,45 @@ struct JointDerivatives {
 
 /// Joint positions of a Cartesian path at places of the path parameter, free of jumps; between them
 /// exact inverse kinematics, guided by interpolation.
+///
+/// A path that passes a singularity beside it, however near, would have an axis turn there and back
+/// by up to half a turn at once, which the places around it do not show. Interpolation leads
+/// through the singularity instead, as far off the path as the path is off the singularity.
 class JointPath {
 public:
     JointPath() = default;
     /// \param places path parameters of the knots, rising from 0 to 1; at least five
-    JointPath(FlangePath flange, std::vector<double> places, std::vector<JointVector> knots);
+    JointPath(FlangePath flange, std::vector<double> places, std::vector<JointVector> knots,
+              const Kinematics& kinematics);
 
     const ToolPath& tool() const noexcept { return flange_.tool; }
     const std::vector<double>& places() const noexcept { return places_; }
     const std::vector<JointVector>& knots() const noexcept { return knots_; }
     /// Derivatives at the knots.
     const std::vector<JointDerivatives>& derivatives() const noexcept { return derivatives_; }
-    /// Exact position; derivatives interpolated.
+    /// Exact position, but beside a singularity; derivatives interpolated.
     PathPoint at(double s, const Kinematics& kinematics) const noexcept;
 
 private:
-    PathPoint interpolate(double s) const noexcept;
+    /// Number of the interval in which `s` lies; it begins at the knot of that number.
+    std::size_t intervalOf(double s) const noexcept;
+    PathPoint interpolate(std::size_t interval, double s) const noexcept;
+    JointVector exactNear(const JointVector& guess, double s,
+                          const Kinematics& kinematics) const noexcept;
+    /// Whether exact inverse kinematics leaves the interpolation where an axis passes 0 or pi:
+    /// there a singularity may be.
+    bool passesSingularity(std::size_t interval, const Kinematics& kinematics) const noexcept;
+    /// Marks an interval, and those around it up to knots at which exact inverse kinematics and
+    /// interpolation have the same speed.
+    void interpolateAround(std::size_t interval, const Kinematics& kinematics) noexcept;
+    /// Where in the interval the axis passes 0 or pi.
+    double crossingOf(std::size_t axis, std::size_t interval) const noexcept;
 
     FlangePath flange_;
     std::vector<double> places_;
     std::vector<JointVector> knots_;
     std::vector<JointDerivatives> derivatives_;
+    std::vector<char> interpolated_;  // by interval: whether its positions are interpolated
 };
 
 }  // namespace metier::motion

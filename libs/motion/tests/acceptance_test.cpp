@@ -246,6 +246,63 @@ TEST(Acceptance, ALineThroughTheWristSingularityRunsIfTheAxesStayContinuous) {
     EXPECT_LT(maxDifference(plan->end(), plan->start()), 1.0);
 }
 
+/// Largest speed of an axis as a share of its limit, of all samples of a plan.
+double largestShareOfVelocity(const RobotModel& model, const Trajectory& plan, double step) {
+    double most = 0;
+    JointVector before = plan.start();
+    for (double t = step; t < plan.duration().count(); t += step) {
+        const JointVector q = plan.sample(Seconds(t)).position;
+        for (std::size_t axis = 0; axis < q.size(); ++axis) {
+            most = std::max(
+                most, std::abs(q[axis] - before[axis]) / (step * model.limits(axis).velocity));
+        }
+        before = q;
+    }
+    return most;
+}
+
+TEST(Acceptance, ALineThatMissesAWristSingularityByAHairRunsThroughIt) {
+    const RobotModel model = loadRobot("edo");
+    int planned = 0;
+    for (const double miss : {1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 3e-5, 1e-4, 1e-3}) {
+        LinRequest request;
+        request.start = JointVector{0, 0.1, 1.2, 0, 0.3, 0};
+        request.reference = TargetReference::relative_base;
+        request.target.rotation = motion::fromRotationVector({miss, -0.6, 0});
+        if (const auto plan = Planner(model).lin(request)) {
+            ++planned;
+            EXPECT_LE(largestShareOfVelocity(model, *plan, 1e-4), 1.001) << miss;
+        }
+    }
+    EXPECT_GE(planned, 4) << "they need not be refused";
+}
+
+TEST(Acceptance, AHalfTurnOfTheToolBesideAWristSingularityHasNoAxisJump) {
+    const RobotModel model = loadRobot("iiwa14");
+    PathRequest request;
+    request.lin.start = JointVector{-0.06439955171679973, 0.7858639380188989, 0.39656856424825404,
+                                    -1.3134878070537581,  0.1484855933362298, 1.2570147413205377,
+                                    0.2621647180682465};
+    request.lin.max_velocity = {0.05297375999728604, 0.2159366437982967, 0.0021140865455736954};
+    request.lin.max_acceleration = {
+        0, 0, 0, 1.977514102259885, 0.03494202714741432, 0.26765764963348193};
+    request.lin.speed_override = 0.03077183372678933;
+    request.lin.reference = TargetReference::relative_tool;
+    PathWaypoint turn;
+    turn.target.translation = {0, 0, -0.0004908865582468778};
+    turn.target.rotation = {6.123233995736766e-17, 0.5787241654440792, 0.6162528899889638,
+                            -0.5341448454411072};
+    turn.blend_radius = 0.00026926474315007047;
+    PathWaypoint step;
+    step.target.translation = {-7.768604369171346e-05, -0.00019731061711140787,
+                               0.0004950226324172849};
+    request.waypoints = {turn, step};
+    const auto plan = Planner(model).path(request);
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    EXPECT_LE(largestShareOfVelocity(model, *plan, 1e-3), 0.2)
+        << "by the exact positions axis 5 turns there and back by 2.8 rad within 4 ms";
+}
+
 TEST(Acceptance, ALineCloseByASingularityIsSlowOrRefusedButNeverTooFast) {
     const RobotModel model = loadRobot("ur5");
     std::mt19937_64 random(3);
