@@ -201,6 +201,9 @@ test('a skill is found by browsing from Objects alone', async () => {
   const programs = await findPrograms(await deviceSet());
   assert.deepStrictEqual([...programs.keys()].sort(), [
     'CartesianLinearMoveSkill', 'CartesianPtpMoveSkill', 'JointLinearMoveSkill', 'JointPtpMoveSkill']);
+  for (const [name, { nodeId }] of programs) {
+    assert.strictEqual(await read(await child(nodeId, 'Name')), name);
+  }
 });
 
 test('write, Start, and the events arrive at the skill, the device and the Server', async () => {

@@ -94,8 +94,20 @@ class Builder:
         """Nodes of this model below a type of another one."""
         foreign = self._space.nodes[self._names.type_id(spec.properties["extends"])]
         name = spec.properties["extends"].partition(":")[2]
-        place = Place(None, [name], [name])
-        self._children(foreign, place, Templates([], self._space.type_chain(foreign.node_id)), spec)
+        self._extend(foreign, Place(None, [name], [name]), spec)
+
+    def _extend(self, foreign: Node, place: Place, spec: Spec) -> None:
+        """Children of a node of another model; those that it has get children themselves."""
+        there = {child.browse_name: child for _, child in self._space.children(foreign.node_id)}
+        added = Spec(spec.name, spec.properties)
+        for name, child in spec.children.items():
+            node = there.get(self._names.browse_name(name))
+            if node is None or child.properties:
+                added.children[name] = child
+            else:
+                self._extend(node, place.child(node.node_id, node.browse_name.name), child)
+        look = self._space.type_chain(foreign.node_id)
+        self._children(foreign, place, Templates([], look), added)
 
     def instance(self, spec: Spec) -> None:
         table = spec.properties

@@ -50,6 +50,7 @@ constexpr std::array kFixedPaths{
     FixedPath{"LastTransition/Id", NodeKind::transition_id},
     FixedPath{"LastTransition/Number", NodeKind::transition_number},
     FixedPath{"LastTransition/TransitionTime", NodeKind::transition_time},
+    FixedPath{"Name", NodeKind::name},
     FixedPath{"ReasonText", NodeKind::reason_text},
     FixedPath{"ExecutionId", NodeKind::execution_id},
     FixedPath{"Steps", NodeKind::steps},

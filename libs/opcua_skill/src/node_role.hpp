@@ -38,6 +38,7 @@ enum class NodeKind : std::uint8_t {
     steps,  ///< step names of a sequence
     current_step,
     progress,
+    name,
 };
 
 /// Which part of a value a Variable holds.

@@ -163,6 +163,8 @@ DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
             return {diagnosticItems()[node_role.detail].read(toOpcua(program_->diagnostic()))};
         case NodeKind::reason_text:
             return {Value::of(readReason(session))};
+        case NodeKind::name:
+            return {Value::of(program_->description().name)};
         case NodeKind::execution_id:
             return {Value::of(program_->executionId())};
         case NodeKind::steps:

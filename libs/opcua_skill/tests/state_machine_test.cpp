@@ -72,6 +72,10 @@ TEST_F(StateMachine, HasNoTransitionAndNoResultBeforeTheFirst) {
     EXPECT_EQ(read(*client_, skill_, "FinalResultData/Duration"), "BadNoData");
 }
 
+TEST_F(StateMachine, HasAName) {
+    EXPECT_EQ(readAs<std::string>(*client_, skill_, "Name"), jointMoveDescription().name);
+}
+
 TEST_F(StateMachine, RefusesInReadyWhatReadyDoesNotAllow) {
     EXPECT_EQ(refusals({"Suspend", "Resume", "Reset"}),
               "Suspend BadInvalidState; Resume BadInvalidState; Reset BadInvalidState; ");

@@ -32,6 +32,14 @@ class TypesAndInstances(ModelFolder):
         self.assertEqual(space.targets(car.node_id, HAS_INTERFACE), [self.node(space, "IPaintedType").node_id])
         self.assertNotEqual(self.node(space, "CarType", "Colour"), self.node(space, "IPaintedType", "Colour"))
 
+    def test_an_extension_adds_to_a_child_that_the_type_has(self):
+        station = '{ type = "BaseDataVariableType", data = "String", rule = "Optional", doc = "What it plays." }'
+        self.write_model(f'{MODEL}\n[[extend]]\nextends = "Test:CarType"\n[extend.children]\n"Radio/Station" = {station}\n')
+        space = self.generate()
+        names = [child.browse_name.name for _, child in space.children(self.node(space, "CarType").node_id)]
+        self.assertEqual(names.count("Radio"), 1)
+        self.assertEqual(self.node(space, "CarType", "Radio", "Station").node_class, "Variable")
+
     def test_a_unit_gives_the_properties_that_tell_it(self):
         space = self.generate()
         unit = self.node(space, "CarType", "Speed", "EngineeringUnits").value
