@@ -231,8 +231,10 @@ std::array<std::string, kSkills> World::beginAnew() {
     ++history_;
     std::array<std::string, kSkills> results;
     for (std::size_t i = 0; i < kSkills; ++i) {
-        results.at(i) = numberOf(
-            orThrow(onlooker_->read(bench_.node(skillName(i), "FinalResultData/Duration"))));
+        // Without a value before the first execution.
+        const auto duration =
+            orThrow(onlooker_->readMany({{bench_.node(skillName(i), "FinalResultData/Duration")}}));
+        results.at(i) = numberOf(duration.at(0).value);
     }
     return results;
 }
