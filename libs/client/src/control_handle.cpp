@@ -14,6 +14,8 @@
 
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
+#include "metier/skill/control.hpp"
+#include "questions.hpp"
 
 namespace metier::client {
 
@@ -182,6 +184,15 @@ private:
 
 Answer<ControlHandle> ControlHandle::acquire(opcua::Client& client, const NodeId& controller,
                                              const ControlOptions& options) {
+    if (options.lease < skill::Control::kShortestLease ||
+        options.lease > skill::Control::kLongestLease) {
+        return tl::unexpected(
+            failureOf(Errc::out_of_range,
+                      fmt::format("a lease of {} ms is not within {} to {} ms",
+                                  options.lease.count(), skill::Control::kShortestLease.count(),
+                                  skill::Control::kLongestLease.count()),
+                      opcua::status::kBadOutOfRange));
+    }
     METIER_ASSIGN(auto nodes, findLease(client, controller));
     const auto taken = client.call(controller, nodes.acquire,
                                    {Value::of(static_cast<std::uint32_t>(options.lease.count())),

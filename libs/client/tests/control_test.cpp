@@ -182,6 +182,15 @@ TEST_F(ControlOfASkill, OneClientKeepsTheOthersOutButNotTheirHalt) {
     EXPECT_TRUE(bobs.awaitState(State::halted, soon()));
 }
 
+TEST_F(ControlOfASkill, NeedsALeaseThatHeartbeatsCanKeep) {
+    for (const auto lease : {-1ms, 0ms, 99ms, 3'600'001ms}) {
+        const auto control = acquire(*alice_, {.lease = lease});
+        ASSERT_FALSE(control) << lease.count();
+        EXPECT_THAT(control.error().message, HasSubstr("100 to 3600000 ms"));
+    }
+    EXPECT_TRUE(acquire(*alice_, {.lease = 100ms}));
+}
+
 TEST_F(ControlOfASkill, LastsWithHeartbeatsAndIsGivenBackAtTheEnd) {
     std::promise<void> lost;
     {

@@ -228,8 +228,9 @@ Result<void> checkRequest(const Kinematics& kinematics, const Pose& pose,
     }
     if (!request.reference.allFinite() || !pose.translation.allFinite() ||
         !pose.rotation.coeffs().allFinite() || !request.bounds.lower.allFinite() ||
-        !request.bounds.upper.allFinite()) {
-        return fail(Errc::invalid_argument, "pose, reference or axis bounds are not finite");
+        !request.bounds.upper.allFinite() || !std::isfinite(request.redundancy_angle.value_or(0))) {
+        return fail(Errc::invalid_argument,
+                    "pose, reference, axis bounds or arm angle are not finite");
     }
     if (std::abs(pose.rotation.norm() - 1.0) > 1e-6) {
         return fail(Errc::invalid_argument, "the pose's quaternion is not a unit quaternion");

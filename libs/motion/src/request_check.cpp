@@ -91,6 +91,13 @@ Checked all(std::initializer_list<Checked> checks) {
     return {};
 }
 
+Checked checkArmAngle(const std::optional<double>& angle) {
+    if (!std::isfinite(angle.value_or(0))) {
+        return invalid(fmt::format("arm angle {} rad is not finite", *angle));
+    }
+    return {};
+}
+
 Checked checkAxisLimits(const RobotModel& model, const JointVector& values, std::string_view what) {
     if (!values.empty() && values.size() != model.axisCount()) {
         return invalid(
@@ -105,14 +112,16 @@ Checked checkPtp(const RobotModel& model, const PtpRequest& request) {
     return all({checkPosition(model, request.start, "start", kStartTolerance),
                 checkAxisLimits(model, request.max_velocity, "max velocity"),
                 checkAxisLimits(model, request.max_acceleration, "max acceleration"),
-                checkOverride(request.speed_override), checkBounds(model, request.axis_bounds)});
+                checkOverride(request.speed_override), checkBounds(model, request.axis_bounds),
+                checkArmAngle(request.redundancy_angle)});
 }
 
 Checked checkLin(const RobotModel& model, const LinRequest& request) {
     return all({checkPosition(model, request.start, "start", kStartTolerance),
                 checkPose(request.target), checkLimitValues(request.max_velocity, "max velocity"),
                 checkLimitValues(request.max_acceleration, "max acceleration"),
-                checkOverride(request.speed_override), checkBounds(model, request.axis_bounds)});
+                checkOverride(request.speed_override), checkBounds(model, request.axis_bounds),
+                checkArmAngle(request.redundancy_angle)});
 }
 
 Checked checkPath(const RobotModel& model, const PathRequest& request) {

@@ -212,6 +212,9 @@ TEST(Kinematics, InverseRefusesWrongSizesAndWhatIsNotFinite) {
     JointVector nan = model.home();
     nan[2] = std::nan("");
     EXPECT_EQ(model.kinematics().inverse(pose, {nan, {}, {}}).error().code, Errc::invalid_argument);
+    const auto turned = model.kinematics().inverse(pose, {model.home(), {}, std::nan("")});
+    ASSERT_FALSE(turned);
+    EXPECT_EQ(turned.error().code, Errc::invalid_argument);
 }
 
 /// The iiwa with its wrist pulled apart: no closed form fits.

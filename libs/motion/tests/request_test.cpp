@@ -118,6 +118,15 @@ TEST_F(Requests, NeedATargetThatIsAPoseOrAJointPosition) {
     }
 }
 
+TEST_F(Requests, NeedAnArmAngleThatIsANumberIfAny) {
+    for (const double angle : {std::nan(""), HUGE_VAL}) {
+        EXPECT_THAT(ptpWith([&](PtpRequest& r) { r.redundancy_angle = angle; }),
+                    HasSubstr("arm angle"));
+        EXPECT_THAT(linWith([&](LinRequest& r) { r.redundancy_angle = angle; }),
+                    HasSubstr("arm angle"));
+    }
+}
+
 TEST_F(Requests, NeedBoundsOfEachAxisWithAnUpperAndALowerEnd) {
     const auto within = [&](const JointVector& lower, const JointVector& upper) {
         return ptpWith([&](PtpRequest& r) { r.axis_bounds = {lower, upper}; });

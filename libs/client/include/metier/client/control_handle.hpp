@@ -35,8 +35,8 @@ class ControlHandle {
 public:
     /// Takes control and begins the heartbeats; waits for the server.
     /// \param controller object with the lease's methods, see SkillAddress::controller()
-    /// Errors: locked, with the holder's name if the server publishes it; not_found, if the
-    ///         controller has no lease; those of the server.
+    /// Errors: out_of_range (the lease); locked, with the holder's name if the server publishes it;
+    ///         not_found, if the controller has no lease; those of the server.
     static opcua::Answer<ControlHandle> acquire(opcua::Client& client,
                                                 const opcua::NodeId& controller,
                                                 const ControlOptions& options);
