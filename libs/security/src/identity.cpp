@@ -20,7 +20,7 @@ namespace {
 constexpr int kLeastBits = 2048;
 constexpr int kMostBits = 4096;
 constexpr int kSerialBytes = 16;
-constexpr std::size_t kLongestName = 64;  // of a CommonName (RFC 5280, appendix A.1)
+constexpr std::size_t kLongestCommonName = 64;  // RFC 5280, appendix A.1
 constexpr std::chrono::days kLongestLifetime{36'525};
 constexpr auto kClockDifference = std::chrono::hours(1);
 constexpr const char* kIdentityFile = "identity.pem";
@@ -147,10 +147,10 @@ Result<void> checkOptions(const IdentityOptions& options) {
                                                         options.key_bits, kLeastBits, kMostBits));
     }
     const auto& name = options.application_name;
-    if (name.empty() || name.size() > kLongestName || name.find('\0') != std::string::npos) {
+    if (name.empty() || name.size() > kLongestCommonName || name.find('\0') != std::string::npos) {
         return fail(Errc::invalid_argument,
-                    fmt::format("an application's name has 1 to {} bytes, not {}", kLongestName,
-                                name.size()));
+                    fmt::format("an application's name has 1 to {} bytes, not {}",
+                                kLongestCommonName, name.size()));
     }
     return checkLifetime(options.lifetime);
 }
