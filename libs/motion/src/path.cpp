@@ -1,5 +1,6 @@
 #include "path.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,6 +72,22 @@ JointDerivatives derivativesAt(const std::vector<double>& places,
     return result;
 }
 
+/// Numbers of which one passes 0 where the arm passes a singularity. Of six axes the determinant of
+/// the Jacobian; of seven, whose arm angle is given, the sine of each axis: such arms are singular
+/// where axis 2, 4 or 6 is straight.
+JointVector singularityMeasures(const Kinematics& kinematics, const JointVector& q) noexcept {
+    constexpr std::size_t six = 6;
+    if (q.size() == six) {
+        const Eigen::Matrix<double, six, six> square = kinematics.jacobian(q);
+        return JointVector{square.determinant()};
+    }
+    JointVector sines = q;
+    for (double& axis : sines) {
+        axis = std::sin(axis);
+    }
+    return sines;
+}
+
 }  // namespace
 
 PathPoint JointLine::at(double s) const noexcept {
@@ -122,28 +139,31 @@ JointVector JointPath::exactNear(const JointVector& guess, double s,
     return kinematics.solutionNear(flange_.at(s), guess, flange_.armAngleAt(s));
 }
 
-double JointPath::crossingOf(std::size_t axis, std::size_t interval) const noexcept {
+double JointPath::crossingOf(std::size_t measure, std::size_t interval,
+                             const Kinematics& kinematics) const noexcept {
     constexpr int halvings = 40;
+    const auto is_negative = [&](const JointVector& q) {
+        return singularityMeasures(kinematics, q)[measure] < 0;
+    };
     double low = places_[interval];
     double high = places_[interval + 1];
-    const bool rises = std::sin(knots_[interval][axis]) < 0;
+    const bool rises = is_negative(knots_[interval]);
     for (int i = 0; i < halvings; ++i) {
         const double middle = (low + high) / 2;
-        const bool before = (std::sin(interpolate(interval, middle).q[axis]) < 0) == rises;
-        (before ? low : high) = middle;
+        (is_negative(interpolate(interval, middle).q) == rises ? low : high) = middle;
     }
     return (low + high) / 2;
 }
 
 bool JointPath::passesSingularity(std::size_t interval,
                                   const Kinematics& kinematics) const noexcept {
-    const JointVector& from = knots_[interval];
-    const JointVector& to = knots_[interval + 1];
-    for (std::size_t axis = 0; axis < from.size(); ++axis) {
-        if ((std::sin(from[axis]) < 0) == (std::sin(to[axis]) < 0)) {
+    const JointVector from = singularityMeasures(kinematics, knots_[interval]);
+    const JointVector to = singularityMeasures(kinematics, knots_[interval + 1]);
+    for (std::size_t measure = 0; measure < from.size(); ++measure) {
+        if ((from[measure] < 0) == (to[measure] < 0)) {
             continue;
         }
-        const double s = crossingOf(axis, interval);
+        const double s = crossingOf(measure, interval, kinematics);
         const JointVector guess = interpolate(interval, s).q;
         const JointVector exact = exactNear(guess, s, kinematics);
         if (exact.empty() || maxDifference(exact, guess) > kLargestDeviation) {

@@ -45,9 +45,10 @@ struct JointDerivatives {
 /// Joint positions of a Cartesian path at places of the path parameter, free of jumps; between them
 /// exact inverse kinematics, guided by interpolation.
 ///
-/// A path that passes a singularity beside it, however near, would have an axis turn there and back
-/// by up to half a turn at once, which the places around it do not show. Interpolation leads
-/// through the singularity instead, as far off the path as the path is off the singularity.
+/// Where a path passes close by a singularity, the exact positions turn an axis by up to half a
+/// turn and back between two knots that show nothing of it. There the path follows the
+/// interpolation, which leads through the singularity, as far off the path as the path is off the
+/// singularity.
 class JointPath {
 public:
     JointPath() = default;
@@ -69,14 +70,15 @@ private:
     PathPoint interpolate(std::size_t interval, double s) const noexcept;
     JointVector exactNear(const JointVector& guess, double s,
                           const Kinematics& kinematics) const noexcept;
-    /// Whether exact inverse kinematics leaves the interpolation where an axis passes 0 or pi:
-    /// there a singularity may be.
+    /// Whether a singularity is passed in the interval at which exact inverse kinematics leaves the
+    /// interpolation.
     bool passesSingularity(std::size_t interval, const Kinematics& kinematics) const noexcept;
     /// Marks an interval, and those around it up to knots at which exact inverse kinematics and
     /// interpolation have the same speed.
     void interpolateAround(std::size_t interval, const Kinematics& kinematics) noexcept;
-    /// Where in the interval the axis passes 0 or pi.
-    double crossingOf(std::size_t axis, std::size_t interval) const noexcept;
+    /// Place in the interval at which that singularity measure (path.cpp) passes 0.
+    double crossingOf(std::size_t measure, std::size_t interval,
+                      const Kinematics& kinematics) const noexcept;
 
     FlangePath flange_;
     std::vector<double> places_;

@@ -277,6 +277,33 @@ TEST(Acceptance, ALineThatMissesAWristSingularityByAHairRunsThroughIt) {
     EXPECT_GE(planned, 4) << "they need not be refused";
 }
 
+TEST(Acceptance, ALineOverTheBaseAxisHasNoAxisJump) {
+    const RobotModel model = loadRobot("edo");
+    // The centre of the wrist passes the axis of axis 1 at 0.1 micrometres and at less.
+    struct Over {
+        JointVector start;
+        double x;
+        double y;
+    };
+    const Over near{{-2.56781734947911, -0.6263772446771323, 1.3397017795678294,
+                     0.00015238704671061143, -1.2878714897829975, -0.5290992379176127},
+                    0.08683539182502958,
+                    0.056122331034649996};
+    const Over nearer{{2.522117177591988, -0.7040439949260542, 1.4531035335906795,
+                       0.005321996283000452, -0.37200259744324304, -2.44672726986654},
+                      0.07558927293115035,
+                      -0.05390635932829753};
+    for (const Over& over : {near, nearer}) {
+        LinRequest request;
+        request.start = over.start;
+        request.reference = TargetReference::relative_base;
+        request.target.translation = {over.x, over.y, 0};
+        const auto plan = Planner(model).lin(request);
+        ASSERT_TRUE(plan) << plan.error().error.message;
+        EXPECT_LE(largestShareOfVelocity(model, *plan, 1e-4), 1.001) << over.x;
+    }
+}
+
 TEST(Acceptance, AHalfTurnOfTheToolBesideAWristSingularityHasNoAxisJump) {
     const RobotModel model = loadRobot("iiwa14");
     PathRequest request;
