@@ -11,6 +11,9 @@ const { runMetier, startProcess, startServer } = require('./metier_process');
 
 const kProgram = path.join(__dirname, 'foreign_skills.js');
 const kLostConnection = 3;
+const kSkills = [
+  'Whole', 'WithoutNumbers', 'PlainEvents', 'WithoutEvents', 'NamesOnly', 'StartAndHalt', 'StartOnly',
+];
 
 let server;
 
@@ -25,12 +28,12 @@ const run = (skill, ...more) => runMetier(['run', server.url, skill, ...more]);
 test('list shows every Program with its state', async () => {
   const { status, output } = await runMetier(['list', server.url]);
   assert.strictEqual(status, 0);
-  for (const name of ['Whole', 'WithoutNumbers', 'PlainEvents', 'WithoutEvents', 'NamesOnly', 'StartAndHalt', 'StartOnly']) {
+  for (const name of kSkills) {
     assert.match(output, new RegExp(`${name} +Ready`));
   }
 });
 
-for (const skill of ['Whole', 'WithoutNumbers', 'PlainEvents', 'WithoutEvents', 'NamesOnly', 'StartAndHalt', 'StartOnly']) {
+for (const skill of kSkills) {
   test(`run writes, starts, and returns the result of ${skill}`, async () => {
     for (const count of [1, 2]) {
       const { status, output } = await run(skill, '--set', 'Duration=0.3');
@@ -45,6 +48,65 @@ for (const skill of ['Whole', 'WithoutNumbers', 'PlainEvents', 'WithoutEvents', 
     assert.match(output, /Count +3/);
   });
 }
+
+for (const skill of ['Whole', 'WithoutEvents', 'NamesOnly']) {
+  test(`${skill} is suspended and goes on, as watch shows`, async () => {
+    const watching = runMetier(['watch', server.url, skill, '--count', '4']);
+    const running = run(skill, '--set', 'Duration=1.5');
+    await awaitState(server.url, skill, 'Running');
+    assert.strictEqual((await runMetier(['suspend', server.url, skill])).status, 0);
+    await awaitState(server.url, skill, 'Suspended');
+    assert.strictEqual((await runMetier(['resume', server.url, skill])).status, 0);
+    const { status, errors } = await running;
+    assert.strictEqual(status, 0, errors);
+    await run(skill, '--set', 'Duration=0.1');  // in case watch began after the first Start
+    const { output } = await watching;
+    for (const step of [/Running -> Suspended/, /Suspended -> Running/, /Running -> Ready/]) {
+      assert.match(output, step);
+    }
+  });
+}
+
+test('what is not there to suspend or reset is named', async () => {
+  for (const [command, method] of [['suspend', 'Suspend'], ['reset', 'Reset']]) {
+    const refused = await runMetier([command, server.url, 'StartOnly']);
+    assert.notStrictEqual(refused.status, 0);
+    assert.match(refused.errors, new RegExp(`StartOnly has no ${method}`));
+  }
+});
+
+/** What the page knows of its server once it is connected. */
+async function awaitCell(url) {
+  const deadline = Date.now() + 10000;
+  let seen;
+  while (Date.now() < deadline) {
+    [seen] = (await (await fetch(`${url}/api/cell`)).json()).servers;
+    if (seen.connected) {
+      return seen;
+    }
+  }
+  throw new Error(`not connected: ${seen?.error}`);
+}
+
+test('the page shows every skill, and says what it cannot halt', async () => {
+  const page = await startServer(['dashboard', '--port', '0', server.url]);
+  try {
+    const { skills } = await awaitCell(page.url);
+    assert.deepStrictEqual(skills.map((skill) => skill.name), kSkills);
+    const suspendable = skills.filter((skill) => skill.can.suspend).map((skill) => skill.name);
+    assert.deepStrictEqual(suspendable, kSkills.filter((name) => !name.startsWith('Start')));
+    const answer = await fetch(`${page.url}/api/halt`, {
+      method: 'POST', headers: { 'Content-Type': 'application/json', 'X-Metier': '1' }, body: '{}' });
+    const { halted, failed } = await answer.json();
+    assert.strictEqual(halted.length, kSkills.length - 1);
+    assert.match(failed[0].message, /StartOnly has no Halt/);
+  } finally {
+    await page.stop();
+  }
+  for (const skill of kSkills.filter((name) => !name.startsWith('Start'))) {
+    assert.strictEqual((await runMetier(['reset', server.url, skill])).status, 0);
+  }
+});
 
 for (const skill of ['Whole', 'PlainEvents', 'WithoutEvents', 'NamesOnly']) {
   test(`a failure of ${skill} ends run, and reset makes it Ready`, async () => {
@@ -147,7 +209,7 @@ test('a composition runs, halts and loses skills of another maker', async () => 
       }
       const failed = await use('--set', 'Duration=0.1', '--set', 'Fails=true');
       assert.notStrictEqual(failed.status, 0);
-      assert.match(failed.errors, new RegExp(skill));
+      assert.match(failed.errors, skill === 'WithoutEvents' ? /WithoutEvents/ : /the lamp is broken/);
       assert.strictEqual((await runMetier(['reset', component.url, `Use${skill}`])).status, 0);
 
       const halted = use('--set', 'Duration=30');

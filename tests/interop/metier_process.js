@@ -40,7 +40,7 @@ function startProcess(program, args) {
     }, kReadyTimeoutMs);
     readline.createInterface({ input: child.stdout }).once('line', (line) => {
       clearTimeout(timer);
-      const match = /^ready (opc\.tcp:\S+)$/.exec(line);
+      const match = /^ready ((?:opc\.tcp|http):\S+)$/.exec(line);
       return match
         ? resolve({ url: match[1], stop: end('SIGTERM'), kill: end('SIGKILL') })
         : reject(new Error(`unexpected: ${line}`));

@@ -255,10 +255,14 @@ Answer<> AsyncSkill::Impl::look(const std::string& id, Done<skill::ExecutionReco
         items.push_back({result.node});
     }
     return client.readManyAsync(
-        std::move(items), [id, nodes = nodes, done = std::move(done)](
+        std::move(items), [id, nodes = nodes, log = log, done = std::move(done)](
                               const Answer<std::vector<opcua::DataValue>>& values) {
-            done(values ? recordFrom(*values, nodes, id)
-                        : Answer<skill::ExecutionRecord>(tl::unexpected(values.error())));
+            auto record = values ? recordFrom(*values, nodes, id)
+                                 : Answer<skill::ExecutionRecord>(tl::unexpected(values.error()));
+            if (record && record->reason_text.empty()) {
+                record->reason_text = log->textOfLast(record->state);
+            }
+            done(std::move(record));
         });
 }
 

@@ -28,7 +28,7 @@ struct ProgramNow {
     std::optional<skill::TransitionNumber> last{};  ///< none: not published, or none yet
 };
 
-/// What to read for programNow(), in its order.
+/// Nodes whose values programNow() needs, in its order.
 std::vector<opcua::ReadItem> programItems(const ProgramNodes& nodes);
 /// \return nothing if the values name no state of a Program
 std::optional<ProgramNow> programNow(const std::vector<opcua::DataValue>& values);

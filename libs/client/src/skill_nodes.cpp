@@ -175,6 +175,8 @@ Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
         const auto value = questions.read(suspendable->target);
         nodes.suspendable = (value ? value->as<bool>() : Result<bool>(true)).value_or(true);
     }
+    const auto& suspend = nodes.methods.at(static_cast<std::size_t>(skill::Method::suspend));
+    nodes.suspendable = nodes.suspendable && !suspend.isNull();
     struct Folder {
         std::string_view name;
         Place place;

@@ -308,6 +308,11 @@ void TransitionLog::addState(State state, UtcTime time) {
     take({.event = event});
 }
 
+std::string TransitionLog::textOfLast(State state) const {
+    const std::lock_guard lock(mutex_);
+    return events_.empty() || events_.back().to != state ? "" : events_.back().reason_text;
+}
+
 void TransitionLog::doubt() {
     take({.doubt = true});
 }

@@ -35,6 +35,8 @@ public:
     void addNameless(const opcua::EventNotice& notice);
     /// Adds the state of a skill that sends no events: the transition from the state before.
     void addState(skill::State state, UtcTime time);
+    /// Text of the newest transition, if it leads to `state`; else empty.
+    std::string textOfLast(skill::State state) const;
     /// Counts a doubt, without any event.
     void doubt();
     void watch(Watch watch);
@@ -86,8 +88,11 @@ opcua::Answer<opcua::Subscription> watchStopping(
     std::function<void(const skill::StoppingEvent&)> on_stopping);
 
 /// Subscribes to the transitions of a skill; each is added to the log. A skill that does not name
-/// its executions is also watched by its state, or by it alone if it sends no events. \return no
-/// subscription at all, if the server has none for either Errors: the server's.
+/// its executions is also watched by its state, or by it alone if it sends no events.
+///
+/// \return no subscription at all, if the server has none for either
+///
+/// Errors: the server's.
 opcua::Answer<std::vector<opcua::Subscription>> watchTransitions(
     opcua::Client& client, const opcua::NodeId& skill, const SkillNodes& nodes,
     std::shared_ptr<TransitionLog> log);

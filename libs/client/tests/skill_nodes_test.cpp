@@ -75,6 +75,7 @@ TEST_P(SkillWithout, AnotherMethodHasNoNodeForIt) {
     const auto nodes = read();
     ASSERT_TRUE(nodes) << nodes.error().message;
     const auto missing = static_cast<std::size_t>(GetParam());
+    EXPECT_EQ(nodes->suspendable, GetParam() != skill::Method::suspend);
     for (std::size_t i = 0; i < 5; ++i) {
         EXPECT_EQ(nodes->methods.at(i).isNull(), i == missing) << i;
     }

@@ -196,6 +196,16 @@ TEST(NamelessTransitions, ThatAProgramDoesNotHaveAreDoubts) {
     EXPECT_FALSE(next(log, before)) << "its state can still be looked at";
 }
 
+TEST(NamelessTransitions, GiveTheTextOfTheNewestForItsStateAlone) {
+    TransitionLog log;
+    EXPECT_EQ(log.textOfLast(skill::State::halted), "");
+    log.addNameless(namelessTransition("Running", "Halted"));
+    EXPECT_THAT(log.textOfLast(skill::State::halted), HasSubstr("film"));
+    EXPECT_EQ(log.textOfLast(skill::State::ready), "");
+    log.addNameless(namelessTransition("Halted", "Ready"));
+    EXPECT_EQ(log.textOfLast(skill::State::halted), "");
+}
+
 TEST(StatesWithoutEvents, AreTakenForTheTransitionsBetweenThem) {
     TransitionLog log;
     using skill::State;

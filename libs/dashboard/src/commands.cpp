@@ -268,6 +268,10 @@ Commands::Halted Commands::haltServer(const std::string& server,
         if (skill == nullptr) {
             continue;
         }
+        if (skill->halt.isNull()) {
+            halted.error = fmt::format("{} has no Halt", key);
+            continue;
+        }
         // With the callback, which may come after this has given up.
         auto promise = std::make_shared<std::promise<opcua::Answer<opcua::CallResult>>>();
         asked.emplace_back(key, promise->get_future());

@@ -32,7 +32,7 @@ struct LinkedSkill {
     std::string key;
     client::SkillAddress address;
     std::string control;  ///< key of its controller's control; empty: it has none
-    opcua::NodeId halt;   ///< its Method
+    opcua::NodeId halt;   ///< its Method; null: it has none
     std::unique_ptr<client::AsyncSkill> skill;
 };
 

@@ -86,9 +86,12 @@ std::string Survey::uniqueKey(const SkillAddress& address) const {
 
 Answer<> Survey::add(const SkillAddress& address) {
     METIER_ASSIGN(auto arm, armOf(address, noteUses(address)));
-    METIER_ASSIGN(auto halt, link_.client().translate(address.node, {{0, "Halt"}}));
-    LinkedSkill linked{uniqueKey(address), address, addController(address), std::move(halt),
-                       nullptr};
+    auto halt = link_.client().translate(address.node, {{0, "Halt"}});
+    if (!halt && halt.error().status != opcua::status::kBadNoMatch) {
+        return tl::unexpected(std::move(halt.error()));
+    }
+    LinkedSkill linked{uniqueKey(address), address, addController(address),
+                       halt.value_or(opcua::NodeId()), nullptr};
     METIER_ASSIGN(auto skill, AsyncSkill::open(link_.client(), address,
                                                {transitionsTo(context_.board, linked.key)}));
     link_.offer_.skills.push_back(skillJson(linked.key, context_.server.name, skill, arm));

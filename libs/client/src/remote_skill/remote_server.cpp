@@ -63,8 +63,8 @@ Result<PendingUse> RemoteServer::open(const client::SkillAddress& skill, std::st
     METIER_ASSIGN(const auto now, open->skill.now());
     if (!open->skill.knowsExecutions()) {
         spdlog::warn(
-            "{}: {} has no StartWith: parameters are written one by one, and it goes on "
-            "if this server dies",
+            "{}: {} has no StartWith: another client can write between its parameters and Start, "
+            "and it goes on if this server dies",
             url(), skill.name);
     }
     return PendingUse{link, std::move(open), now, fmt::format("{} of {}", skill.name, name()),

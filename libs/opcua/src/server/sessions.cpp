@@ -186,7 +186,7 @@ void Sessions::install(UA_ServerConfig& config) {
     control.allowHistoryUpdateDeleteRawModified = [](auto...) -> UA_Boolean { return false; };
     addTokenPolicy(control, UA_USERTOKENTYPE_ANONYMOUS, "anonymous");
     addTokenPolicy(control, UA_USERTOKENTYPE_USERNAME, "username");
-    // Of a lab, whose channels have no encryption.
+    // The channels of a lab have no encryption.
     config.allowNonePolicyPassword = !options_.security;
 }
 

@@ -33,9 +33,9 @@ namespace metier::client {
 /// Threading: requests from any thread. Must end before its Client.
 class AsyncSkill {
 public:
-    template <typename T = void>
     /// Callback for the outcome of a request; runs on the client's thread and must not block. May
     /// send the next request.
+    template <typename T = void>
     using Done = std::function<void(opcua::Answer<T>)>;
     /// Callback for a transition; runs on the client's thread and must not block.
     using OnTransition = std::function<void(const skill::TransitionEvent&)>;
@@ -77,7 +77,7 @@ public:
 
     /// Present state of the skill.
     struct Now {
-        /// State by CurrentState/Number, as the server sent it; not compared with the known ones.
+        /// State by the Id, Number or name of CurrentState.
         skill::State state = skill::State::halted;
         /// Reason of the state, for a person; may be empty.
         std::string reason_text{};
@@ -85,7 +85,9 @@ public:
         std::string execution_id{};
     };
     /// Reads the present state; waits for the server.
-    /// Errors: connection_lost, timeout; those of the server.
+    /// Errors: connection_lost, timeout; type_mismatch, if CurrentState names no state of a
+    /// Program;
+    ///         those of the server.
     opcua::Answer<Now> now() const;
 
     /// Sends StartWith, or writes and Start; `done` gets the execution's id. Running has been

@@ -26,8 +26,9 @@ namespace metier::client {
 ///     auto arm = SkillHandle::open(client, *skill);
 ///     auto result = arm->run({{"TargetJointPosition", joints}}, steady_clock::now() + 30s);
 ///
-/// Transitions arrive as events, so nothing polls. Errors of every call: those of the server, with
-/// the server's text (value, limit, unit) if it gives one; connection_lost; timeout.
+/// Transitions arrive as events. A server that does not name executions is also asked for the state
+/// each second, and every 20 ms if it has no subscriptions. Errors of every call: those of the
+/// server, with the server's text (value, limit, unit) if it gives one; connection_lost; timeout.
 /// Failure::delivery says whether the request left.
 ///
 /// With a Client that reconnects a handle stays usable. A call that waits for the end of an
@@ -79,10 +80,10 @@ public:
     /// without an error.
     opcua::Answer<> start() { return call(skill::Method::start); }
     /// Sets all parameters and starts, in one call. Running has been committed when this returns
-    /// without an error.
-    /// \return the execution's id
-    /// Errors: not_supported, if the server's skill lacks StartWith; the server's refusal, see
-    ///         skill::Program::startWith().
+    /// without an error. A skill without StartWith is started by writes and Start.
+    /// \return the execution's id; one of this handle alone, if the skill has no StartWith
+    /// Errors: not_supported, for a lease or an action on the loss of the owner without StartWith;
+    ///         the server's refusal, see skill::Program::startWith().
     opcua::Answer<std::string> startWith(const skill::StartRequest& request);
     /// Whether the server supports named executions: startWith() and execution().
     bool knowsExecutions() const noexcept;
