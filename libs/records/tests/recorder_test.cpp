@@ -1,6 +1,7 @@
 // The recorder while its store is slow, full, away or in use by others.
 #include "metier/records/recorder.hpp"
 
+#include <fmt/format.h>
 #include <sched.h>
 #include <sys/mount.h>
 #include <unistd.h>
@@ -9,6 +10,7 @@
 #include <fstream>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "recorded.hpp"
 #include "sqlite_database.hpp"
@@ -57,6 +59,8 @@ constexpr std::size_t kRoomForThree = 3'900;
 
 class TroubledRecorder : public ::testing::Test {
 protected:
+    explicit TroubledRecorder(fs::path folder = testFolder()) : folder_(std::move(folder)) {}
+
     Recorder::Options options() {
         Recorder::Options options;
         options.url = file_.string();
@@ -75,7 +79,7 @@ protected:
         return database;
     }
 
-    const fs::path folder_ = testFolder();
+    const fs::path folder_;
     const fs::path file_ = folder_ / "records.db";
     Alarms alarms_;
 };
@@ -320,7 +324,18 @@ private:
     bool allowed_ = false;
 };
 
-TEST_F(TroubledRecorder, InAFolderThatCannotBeWrittenIsReadButNotContinued) {
+/// Its folder is where anybody may come: others may not enter the home of the user who builds.
+class RecorderForOthers : public TroubledRecorder {
+protected:
+    RecorderForOthers()
+        : TroubledRecorder(fs::temp_directory_path() /
+                           fmt::format("metier_records_{}", ::getpid())) {
+        fs::create_directories(folder_);
+    }
+    ~RecorderForOthers() override { fs::remove_all(folder_); }
+};
+
+TEST_F(RecorderForOthers, InAFolderThatCannotBeWrittenIsReadButNotContinued) {
     {
         const auto recorder = make(options());
         recordOne(*recorder, moveOf("m-1"), finished(at(1)));
