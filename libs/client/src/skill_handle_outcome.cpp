@@ -239,6 +239,7 @@ TransitionEvent SkillHandle::Impl::namelessEnd(const ProgramNow& now, Transition
          found = log->await(from, patience, ends_so)) {
         if (*found) {
             auto event = (*found)->event;
+            event.number = now.last.value_or(event.number);  // the event may be of a run before
             event.reason =
                 now.state == State::halted ? skill::Reason::error : skill::Reason::finished;
             return event;
@@ -306,7 +307,9 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
     auto from = awaited.from;
     if (!impl_->nodes.knowsExecutions()) {
         auto end = impl_->awaitNamelessEnd(awaited, deadline);
-        impl_->own.reset();
+        if (end || end.error().code == Errc::execution_lost) {
+            impl_->own.reset();
+        }
         return end;
     }
     for (;;) {
