@@ -172,11 +172,15 @@ protected:
 
 TEST_F(ExecutorOfAServer, RunsWorkInItsOrderAndNotWithinTheCall) {
     serve();
-    executor_.post([this] {
-        executor_.post([this] { done_.push_back(3); });
-        done_.push_back(1);
-    });
-    executor_.post([this] { done_.push_back(2); });
+    // Both are posted before the first of them can run: the server's thread is in this call.
+    ASSERT_TRUE(server().call([this] {
+        executor_.post([this] {
+            executor_.post([this] { done_.push_back(3); });
+            done_.push_back(1);
+        });
+        executor_.post([this] { done_.push_back(2); });
+        EXPECT_THAT(done_, IsEmpty());
+    }));
     settle();
     settle();
     EXPECT_THAT(done_, ElementsAre(1, 2, 3));
