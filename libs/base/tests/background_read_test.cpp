@@ -31,7 +31,7 @@ TEST(BackgroundRead, KeepsNobodyWaitingForADiskThatHangs) {
         disk.wait();
         return std::make_shared<int>(*last + 1);
     });
-    EXPECT_EQ(*read.get(), 7) << "after kPatience";
+    EXPECT_EQ(*read.get(), 7) << "after its patience";
     auto shortest = std::chrono::nanoseconds::max();
     for (int i = 0; i < 5; ++i) {  // one of them is not held up by other work of the computer
         const auto before = std::chrono::steady_clock::now();
@@ -39,7 +39,7 @@ TEST(BackgroundRead, KeepsNobodyWaitingForADiskThatHangs) {
         shortest =
             std::min<std::chrono::nanoseconds>(shortest, std::chrono::steady_clock::now() - before);
     }
-    EXPECT_LT(shortest, BackgroundRead<int>::kPatience);
+    EXPECT_LT(shortest, kReadPatience);
     works.set_value();
     const auto soon = std::chrono::steady_clock::now() + 10s;
     while (*read.get() == 7) {

@@ -27,8 +27,6 @@ std::vector<Certificate> certificatesIn(const std::filesystem::path& folder);
 
 /// Content of the folders at one moment.
 struct TrustStore::Holdings {
-    /// Nothing, of no folder: never current.
-    Holdings() = default;
     explicit Holdings(const std::filesystem::path& folder);
 
     /// Reports whether no file was added, renamed or removed since.

@@ -35,17 +35,20 @@ const std::string& hashOfNobody() {
 
 }  // namespace
 
-Result<LoginGuard> LoginGuard::open(std::filesystem::path file, const Clock& clock) {
+Result<LoginGuard> LoginGuard::open(std::filesystem::path file, const Clock& clock,
+                                    std::chrono::milliseconds patience) {
     const auto changed = changeOf(file);
     METIER_ASSIGN(auto users, UserTable::load(file));
-    return LoginGuard(file, clock, {std::move(users), changed});
+    return LoginGuard(file, clock, {std::move(users), changed}, patience);
 }
 
-LoginGuard::LoginGuard(const std::filesystem::path& file, const Clock& clock, Users users)
+LoginGuard::LoginGuard(const std::filesystem::path& file, const Clock& clock, Users users,
+                       std::chrono::milliseconds patience)
     : clock_(&clock) {
     using Kept = std::shared_ptr<const Users>;
     users_ = std::make_unique<BackgroundRead<Users>>(
-        std::make_shared<Users>(std::move(users)), [file](const Kept& last) -> Kept {
+        std::make_shared<Users>(std::move(users)),
+        [file](const Kept& last) -> Kept {
             const auto changed = changeOf(file);
             if (changed == last->changed) {
                 return last;
@@ -55,7 +58,8 @@ LoginGuard::LoginGuard(const std::filesystem::path& file, const Clock& clock, Us
                 spdlog::error("the users of before stay: {}", table.error().message);
             }
             return std::make_shared<Users>(Users{table ? std::move(*table) : last->table, changed});
-        });
+        },
+        patience);
 }
 
 Result<Role> LoginGuard::check(const std::string& user, const std::string& password,

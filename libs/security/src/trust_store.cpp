@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <openssl/err.h>
 
+#include <utility>
+
 #include "holdings.hpp"
 #include "openssl.hpp"
 #include "private_file.hpp"
@@ -50,12 +52,15 @@ void removeFrom(const fs::path& folder, const Certificate& certificate) {
 
 }  // namespace
 
-TrustStore::TrustStore(fs::path folder) : folder_(std::move(folder)) {}
+TrustStore::TrustStore(fs::path folder, std::chrono::milliseconds patience)
+    : folder_(std::move(folder)),
+      patience_(patience),
+      opened_with_(std::make_shared<Holdings>(folder_)) {}
 TrustStore::~TrustStore() = default;
 TrustStore::TrustStore(TrustStore&& other) noexcept = default;
 TrustStore& TrustStore::operator=(TrustStore&& other) noexcept = default;
 
-Result<TrustStore> TrustStore::open(fs::path folder) {
+Result<TrustStore> TrustStore::open(fs::path folder, std::chrono::milliseconds patience) {
     for (const auto* part : {kTrusted, kTrustedLists, kIssuers, kIssuersLists, kRejected}) {
         std::error_code error;
         fs::create_directories(folder / part, error);
@@ -63,7 +68,7 @@ Result<TrustStore> TrustStore::open(fs::path folder) {
             return failed(folder / part, error.value());
         }
     }
-    return TrustStore(std::move(folder));
+    return TrustStore(std::move(folder), patience);
 }
 
 tl::expected<Certificate, CertificateRefusal> TrustStore::check(std::string_view der, UtcTime now) {
@@ -80,9 +85,11 @@ std::shared_ptr<const TrustStore::Holdings> TrustStore::holdings() {
     using Kept = std::shared_ptr<const Holdings>;
     if (holdings_ == nullptr) {
         holdings_ = std::make_unique<BackgroundRead<Holdings>>(
-            std::make_shared<Holdings>(), [folder = folder_](const Kept& last) -> Kept {
+            std::exchange(opened_with_, nullptr),
+            [folder = folder_](const Kept& last) -> Kept {
                 return last->isCurrent() ? last : std::make_shared<Holdings>(folder);
-            });
+            },
+            patience_);
     }
     return holdings_->get();
 }

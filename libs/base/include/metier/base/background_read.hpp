@@ -11,44 +11,43 @@
 
 namespace metier {
 
-/// Reads files on a thread of its own, for a caller that must not wait long for a disk.
-///
-/// Threading: get() from any thread; it waits kPatience at most. The destructor waits for a read
-/// that is under way.
-template <typename T>
+/// Longest time that a server's thread waits for a read. A read from a healthy disk takes about a
+/// millisecond; a busy computer can delay a thread by some 50 ms.
+constexpr std::chrono::milliseconds kReadPatience{100};
+
 /// Reads files on a thread of its own, for a caller that must not wait long for a disk, such as a
 /// server's thread that checks a user.
 ///
 ///     BackgroundRead<Users> users(std::make_shared<const Users>(), readUsersIfChanged);
 ///     const auto now = users.get();
 ///
-/// Threading: get() from any thread; it waits kPatience at most. The destructor waits for a read
-/// that is under way, without a limit if the disk hangs.
+/// Threading: get() from any thread; it waits for its patience at most. The destructor waits for a
+/// read that is under way, without a limit if the disk hangs.
+template <typename T>
 class BackgroundRead {
 public:
     /// Reads the files, or returns `last` if nothing has changed. Runs on the reading thread; must
     /// not return null and must not throw.
     using Read = std::function<std::shared_ptr<const T>(const std::shared_ptr<const T>& last)>;
 
-    /// Longest time that get() waits for a read. A read from a healthy disk takes about a
-    /// millisecond; a busy computer can delay a thread by some 50 ms.
-    static constexpr std::chrono::milliseconds kPatience{100};
-
-    /// \param first result of get() until the first read has ended; not null
-    BackgroundRead(std::shared_ptr<const T> first, Read read)
-        : newest_(std::move(first)),
+    /// \param first    result of get() until the first read has ended; not null
+    /// \param patience longest time that get() waits for a read
+    BackgroundRead(std::shared_ptr<const T> first, Read read,
+                   std::chrono::milliseconds patience = kReadPatience)
+        : patience_(patience),
+          newest_(std::move(first)),
           read_(std::move(read)),
           thread_([this](const auto& stop) { run(stop); }) {}
 
     /// Asks for a new read and returns its contents; those of the last read if the new one takes
-    /// longer than kPatience. While such a slow read is under way, get() returns at once. Never
+    /// longer than the patience. While such a slow read is under way, get() returns at once. Never
     /// null; the contents never change.
     std::shared_ptr<const T> get() {
         std::unique_lock lock(mutex_);
         const auto wanted = ++asked_;
         changed_.notify_all();
         if (!hangs_) {
-            hangs_ = !changed_.wait_for(lock, kPatience, [&] { return done_ >= wanted; });
+            hangs_ = !changed_.wait_for(lock, patience_, [&] { return done_ >= wanted; });
         }
         return newest_;
     }
@@ -69,11 +68,12 @@ private:
         }
     }
 
-    std::mutex mutex_;  // guards all members but read_ and thread_
+    const std::chrono::milliseconds patience_;
+    std::mutex mutex_;  // guards all members but patience_, read_ and thread_
     std::condition_variable_any changed_;
     std::uint64_t asked_ = 0;
     std::uint64_t done_ = 0;  ///< value of asked_ that the last finished read answers
-    bool hangs_ = false;      ///< a read has taken longer than kPatience
+    bool hangs_ = false;      ///< a read has taken longer than the patience
     std::shared_ptr<const T> newest_;
     const Read read_;
     std::jthread thread_;  // last: it uses everything above

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -31,8 +32,10 @@ public:
     /// Reads the file of users; waits for the disk.
     /// \param file  of a UserTable; a missing one has no users
     /// \param clock measures the delays; must outlive this
+    /// \param patience longest time that check() and roleOf() wait for a change of the file
     /// Errors: those of UserTable::load().
-    static Result<LoginGuard> open(std::filesystem::path file, const Clock& clock);
+    static Result<LoginGuard> open(std::filesystem::path file, const Clock& clock,
+                                   std::chrono::milliseconds patience = kReadPatience);
 
     /// Checks a password and returns the role of its user.
     /// \param thumbprint thumbprint of the application's certificate
@@ -42,7 +45,7 @@ public:
                        const std::string& thumbprint);
 
     /// Present role of a user; nothing if the user is not known. Does not count as an attempt.
-    /// Waits for the file as check() does, 0.1 s at most.
+    /// Waits for the file as check() does.
     std::optional<Role> roleOf(const std::string& user);
 
 private:
@@ -58,7 +61,8 @@ private:
         std::filesystem::file_time_type changed{};
     };
 
-    LoginGuard(const std::filesystem::path& file, const Clock& clock, Users users);
+    LoginGuard(const std::filesystem::path& file, const Clock& clock, Users users,
+               std::chrono::milliseconds patience);
     void noteFailure(const Who& who, int free_attempts, const UserTable& users);
     int freeAttempts(const Who& application);
     void forgetOne(const UserTable& users);

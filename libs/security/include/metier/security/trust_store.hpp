@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -54,8 +55,11 @@ struct CertificateRefusal {
 /// Threading: any thread, one at a time.
 class TrustStore {
 public:
-    /// Makes the folders that are missing. Errors: resource_unavailable.
-    static Result<TrustStore> open(std::filesystem::path folder);
+    /// Makes the folders that are missing and reads their content; waits for the disk.
+    /// \param patience longest time that check() waits for a change of the content
+    /// Errors: resource_unavailable.
+    static Result<TrustStore> open(std::filesystem::path folder,
+                                   std::chrono::milliseconds patience = kReadPatience);
     ~TrustStore();
     TrustStore(TrustStore&& other) noexcept;
     TrustStore& operator=(TrustStore&& other) noexcept;
@@ -92,10 +96,12 @@ public:
     struct Holdings;  ///< content of the folders
 
 private:
-    explicit TrustStore(std::filesystem::path folder);
+    TrustStore(std::filesystem::path folder, std::chrono::milliseconds patience);
     std::shared_ptr<const Holdings> holdings();
 
     std::filesystem::path folder_;
+    std::chrono::milliseconds patience_;
+    std::shared_ptr<const Holdings> opened_with_;         // shared with the first read
     std::unique_ptr<BackgroundRead<Holdings>> holdings_;  // made by the first check
 };
 
