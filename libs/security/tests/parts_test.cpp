@@ -27,7 +27,7 @@ protected:
         const auto log = open();
         for (const auto& event : events) {
             log->append({std::chrono::system_clock::now(), event, {}});
-            ASSERT_TRUE(log->flush(std::chrono::steady_clock::now() + 10s));
+            ASSERT_TRUE(log->flush(std::chrono::steady_clock::now() + 30s));
         }
     }
 
@@ -156,7 +156,7 @@ TEST_F(AuditParts, StayOneWhereTheNextCannotBeMade) {
         std::filesystem::create_directories(partOf(file_, 2));
         for (const auto* event : {"Halt", "Reset"}) {
             log->append({std::chrono::system_clock::now(), event, {}});
-            ASSERT_TRUE(log->flush(std::chrono::steady_clock::now() + 10s));
+            ASSERT_TRUE(log->flush(std::chrono::steady_clock::now() + 30s));
         }
     }
     std::filesystem::remove(partOf(file_, 2));
