@@ -37,11 +37,13 @@ void Watchdog::tick() {
 }
 
 nanoseconds Watchdog::look() {
+    // Before the last tick is read: if this thread is held up between them, the tick is the newer.
+    const auto now = clock_.now().time_since_epoch().count();
     const auto last = last_tick_.load();
     if (last == 0) {
         return limit_;
     }
-    const nanoseconds silent(clock_.now().time_since_epoch().count() - last);
+    const nanoseconds silent(now - last);
     if (silent <= limit_) {
         return limit_ - silent + std::chrono::microseconds(1);
     }
