@@ -62,11 +62,11 @@ opcua::Answer<> callOnce(const client::AsyncSkill& skill, skill::Method method) 
     return awaitAnswer<void>([&](auto done) { return skill.call(method, std::move(done)); });
 }
 
-/// Asks again while the device takes its time, for a second at most.
+/// Asks again while the device takes its time, for a second after its first answer at most.
 opcua::Answer<> resetUntilDone(const client::AsyncSkill& skill) {
     constexpr std::chrono::milliseconds kPause{20};
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     auto asked = callOnce(skill, skill::Method::reset);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     while (!asked && asked.error().code == Errc::timeout &&
            asked.error().delivery == opcua::Failure::Delivery::answered &&
            std::chrono::steady_clock::now() < deadline) {

@@ -11,7 +11,6 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr auto kAnswer = 1'000ms;
 constexpr std::size_t kLongestLine = 1'000'000;
 
 /// A part as it is served: pose and size [m, rad], who holds it.
@@ -28,9 +27,10 @@ nlohmann::json partJson(const nlohmann::json& told) {
 
 }  // namespace
 
-WorldWatch::WorldWatch(CellWorld world, Board& board)
+WorldWatch::WorldWatch(CellWorld world, Board& board, std::chrono::milliseconds answer)
     : world_(std::move(world)),
       board_(board),
+      answer_(answer),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 void WorldWatch::show(bool shown) {
@@ -42,7 +42,7 @@ void WorldWatch::show(bool shown) {
 }
 
 std::optional<std::string> WorldWatch::askForLine() {
-    const auto deadline = std::chrono::steady_clock::now() + kAnswer;
+    const auto deadline = std::chrono::steady_clock::now() + answer_;
     if (!link_) {
         received_.clear();
         auto link = link::TcpLink::connect(world_.address, world_.port, deadline);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -19,8 +20,10 @@ namespace metier::dashboard {
 /// Threading: a thread of its own; show() from any.
 class WorldWatch {
 public:
-    /// \param board must outlive this
-    WorldWatch(CellWorld world, Board& board);
+    /// \param board  must outlive this
+    /// \param answer longest time in which the world must answer; then it is connected to anew
+    WorldWatch(CellWorld world, Board& board,
+               std::chrono::milliseconds answer = std::chrono::seconds(1));
 
     void show(bool shown);
 
@@ -32,6 +35,7 @@ private:
 
     const CellWorld world_;
     Board& board_;
+    const std::chrono::milliseconds answer_;
     std::optional<link::TcpLink> link_;
     std::string received_;
     nlohmann::json parts_;  // parts as reported last

@@ -38,6 +38,7 @@ protected:
                              }};
         dashboard_ = Dashboard::start(std::move(options), clock_).value();
         browser_ = std::make_unique<httplib::Client>("127.0.0.1", dashboard_->port());
+        browser_->set_read_timeout(30);
         ASSERT_EQ(connected_.get_future().wait_for(30s), std::future_status::ready);
     }
     void TearDown() override { dashboard_.reset(); }
@@ -62,7 +63,7 @@ protected:
         return json::parse(answer->body).at("error");
     }
 
-    SystemClock clock_;
+    ManualClock clock_;  // of log-ins
     std::once_flag once_;
     std::promise<void> connected_;
     std::unique_ptr<Dashboard> dashboard_;
@@ -77,7 +78,20 @@ protected:
         options.lab = true;
         options.limits.tabs = 2;
         serve(std::move(options), arm_.url());
-        EXPECT_EQ(postOnceConnected("/api/halt", json::object())->status, 200);
+        awaitShownConnected();
+    }
+    /// Waits until the page shows that its server is connected.
+    void awaitShownConnected() const {
+        const auto end = std::chrono::steady_clock::now() + 30s;
+        const auto isShown = [this] {
+            const auto cell = json::parse(browser_->Get("/api/cell")->body);
+            return cell.at("servers").at(0).at("connected") == true;
+        };
+        bool shown = isShown();
+        while (!shown && std::chrono::steady_clock::now() < end) {
+            shown = isShown();
+        }
+        EXPECT_TRUE(shown);
     }
     /// A stream of which all up to its snapshot has come.
     std::unique_ptr<RawBrowser> openTab() const {
@@ -219,8 +233,9 @@ TEST_F(PageOfAnOpenServer, WantsALogInAllTheSame) {
     const auto me = json::parse(browser_->Get("/api/me")->body);
     EXPECT_EQ(me.at("login_required"), true);
     EXPECT_EQ(me.at("role"), "");
-    EXPECT_EQ(post("/api/login", {{"user", "anna"}, {"password", "x"}})->status, 502)
-        << "an open server lets everybody in";
+    const auto login = postOnceConnected("/api/login", {{"user", "anna"}, {"password", "x"}});
+    EXPECT_EQ(login->status, 502);
+    EXPECT_THAT(login->body, HasSubstr("without security")) << "an open server lets everybody in";
 }
 
 class PageOfAClosedServer : public ServedPage {

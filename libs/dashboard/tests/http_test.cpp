@@ -64,6 +64,7 @@ protected:
         options.limits.request_time = std::chrono::seconds(1);
         dashboard_ = Dashboard::start(std::move(options), clock_).value();
         client_ = std::make_unique<httplib::Client>("127.0.0.1", dashboard_->port());
+        client_->set_read_timeout(30);
     }
     ~Page() override { fs::remove_all(folder_); }
 

@@ -13,12 +13,11 @@ namespace {
 using nlohmann::json;
 using opcua_skill::SafetyStateKind;
 
-class LiveLink : public CellBench {
+/// An arm, and a tab that is sent what its link notes.
+class LiveBench : public CellBench {
 protected:
-    LiveLink() {
+    LiveBench() {
         arm_.serve();
-        watch({.name = "arm", .url = arm_.url()});
-        watches_.showLive(true);
         ticker_.run(true);
     }
     void TearDown() override {
@@ -43,6 +42,26 @@ protected:
     ArmByHand arm_{{}, 0.11};
     Ticker ticker_{board_};
     json sent_ = json::object();
+};
+
+/// The arm is watched, by the thread of its watch.
+class LiveLink : public LiveBench {
+protected:
+    LiveLink() {
+        watch({.name = "arm", .url = arm_.url()});
+        watches_.showLive(true);
+    }
+};
+
+/// The test is the thread that makes the link.
+class LinkByHand : public LiveBench {
+protected:
+    std::shared_ptr<ServerLink> link_ =
+        system_tests::orThrow(ServerLink::open({.server = {.name = "arm", .url = arm_.url()},
+                                                .server_at = [](const auto&) { return ""; },
+                                                .models = models_,
+                                                .board = board_},
+                                               client_options_, [](const opcua::Failure&) {}));
 };
 
 TEST_F(LiveLink, ShowsWhatAnArmMeasures) {
@@ -114,15 +133,14 @@ TEST_F(LiveLink, ShowsWhatASkillIsDoing) {
     EXPECT_EQ(awaitState(key, "Ready").at("sub_state"), "") << "that of Running is over";
 }
 
-TEST_F(LiveLink, ShowsNothingMoreOnceNobodyLooks) {
+TEST_F(LinkByHand, ShowsNothingMoreOnceNobodyLooks) {
+    link_->showLive(true);
     awaitLive("/arms/arm/q", json::array({0.0, 0.0}));
-    const auto link = watches_.link("arm");
-    // As the watch's thread, which has nothing to do now.
-    link->showLive(false);
+    link_->showLive(false);
     arm_.measure([](Measured& now) { now.kinematics.joint_position = {1.0, 1.0}; });
     const auto client = system_tests::connectAs(arm_.url(), "another client");
     auto told = std::make_shared<std::promise<void>>();
-    const auto nodes = client::findKinematics(*client, link->skills().front().address).value();
+    const auto nodes = client::findKinematics(*client, link_->skills().front().address).value();
     const auto subscription = client::subscribeJointPosition(
         *client, nodes, std::chrono::milliseconds(10),
         [told, once = false](const std::vector<double>& joints) mutable {
@@ -134,7 +152,7 @@ TEST_F(LiveLink, ShowsNothingMoreOnceNobodyLooks) {
     json all;
     board_.changeLive([&](LiveValues& live) { all = live.all({}); });
     EXPECT_EQ(all.at("arms").at("arm").at("q"), json::array({0.0, 0.0}));
-    link->showLive(true);
+    link_->showLive(true);
     awaitLive("/arms/arm/q", json::array({1.0, 1.0}));
 }
 

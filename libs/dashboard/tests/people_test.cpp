@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <future>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -228,8 +230,12 @@ TEST_F(PeopleOfALab, HaveSessionsUntilTheServerEnds) {
     const auto session = anybody()->session("arm").value();
     EXPECT_EQ(anybody()->session("arm").value(), session) << "it is kept";
     EXPECT_EQ(anybody()->session("nobody").error().code, Errc::not_found);
+    const auto ended = std::make_shared<std::promise<void>>();
+    session->client().onConnectionLost([ended](const opcua::Failure&) { ended->set_value(); });
     arm.reset();
+    // The watch's connection and this one are lost one after the other, in any order.
     shown_.await("server", [](const json& told) { return told.at("connected") == false; });
+    ASSERT_EQ(ended->get_future().wait_for(30s), std::future_status::ready);
     const auto lost = anybody()->session("arm");
     ASSERT_FALSE(lost);
     EXPECT_THAT(lost.error().message, HasSubstr("arm: "));

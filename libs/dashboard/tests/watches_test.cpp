@@ -3,6 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdint>
 #include <string>
 
 #include "cell_bench.hpp"
@@ -17,6 +22,33 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Pair;
+
+/// A port of loopback for a server that ends and comes back: as long as this lives, no test beside
+/// this one gets it for a free one. It does not listen, so a server may.
+class KeptPort {
+public:
+    KeptPort() {
+        const int yes = 1;
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof address;
+        auto* generic = reinterpret_cast<sockaddr*>(&address);  // NOLINT(*-reinterpret-cast)
+        EXPECT_EQ(setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes), 0);
+        EXPECT_EQ(bind(socket_, generic, size), 0);
+        EXPECT_EQ(getsockname(socket_, generic, &size), 0);
+        number_ = ntohs(address.sin_port);
+    }
+    ~KeptPort() { close(socket_); }
+    KeptPort(const KeptPort&) = delete;
+    KeptPort& operator=(const KeptPort&) = delete;
+
+    std::uint16_t number() const { return number_; }
+
+private:
+    const int socket_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    std::uint16_t number_ = 0;
+};
 
 class WatchedServers : public CellBench {
 protected:
@@ -80,15 +112,15 @@ TEST_F(WatchedServers, ThatMayNotBeConnectedToSayWhyWithoutControlCharacters) {
 }
 
 TEST_F(WatchedServers, AreConnectedToAnewAfterTheirEnd) {
-    auto arm = std::make_unique<ArmByHand>();
+    const KeptPort port;
+    auto arm = std::make_unique<ArmByHand>(system_tests::BenchOptions{.port = port.number()});
     arm->serve();
-    const auto port = arm->bench().port();
     watch({.name = "arm", .url = arm->url()});
     const auto before = watches_.link("arm");
     arm.reset();
     awaitError("arm");
     EXPECT_EQ(board_.skill(keyOf("arm", "MoveSkill"))->state, "Unknown");
-    ArmByHand again({.port = port});
+    ArmByHand again({.port = port.number()});
     again.serve();
     awaitConnected("arm");
     EXPECT_NE(watches_.link("arm"), before);
