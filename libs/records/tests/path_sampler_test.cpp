@@ -103,7 +103,9 @@ TEST_F(SampledArm, IsNotRecordedAgainAndAgainWhileItStands) {
     const auto pauses = static_cast<std::size_t>(samples.back().time);
     EXPECT_GE(samples.size(), 3U);
     EXPECT_LE(samples.size(), 4U + pauses);
-    EXPECT_EQ(samples[samples.size() - 2].actual[0], 0.0) << "the pause has an end";
+    const auto there = std::count_if(samples.begin(), samples.end(),
+                                     [](const auto& sample) { return sample.actual[0] == 0.0; });
+    EXPECT_GE(there, 2) << "the pause has an end";
 }
 
 TEST_F(SampledArm, IsRecordedForEachExecution) {

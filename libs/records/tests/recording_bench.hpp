@@ -76,7 +76,7 @@ public:
     Recorder& recorder() { return *recorder_; }
     /// With all that was recorded up to now.
     std::unique_ptr<Store> store() {
-        EXPECT_TRUE(recorder_->flush(std::chrono::steady_clock::now() + std::chrono::seconds(20)));
+        EXPECT_TRUE(recorder_->flush(std::chrono::steady_clock::now() + std::chrono::seconds(60)));
         auto store = Store::open(file_);
         EXPECT_TRUE(store) << store.error().message;
         return store ? std::move(*store) : nullptr;

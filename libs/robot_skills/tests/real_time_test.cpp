@@ -14,6 +14,9 @@ using skill::State;
 using skill::ValueMap;
 
 const ValueMap kUp{{"TargetPosition", Frame{0, 0, 0.05}}, {"Relative", std::int32_t{1}}};
+/// So slow that it is under way still, however long the test is held up.
+const ValueMap kSlowlyUp{
+    {"TargetPosition", Frame{0, 0, 0.05}}, {"Relative", std::int32_t{1}}, {"SpeedOverride", 0.05}};
 
 /// The bench of the other tests, but its arm runs on its own threads.
 class RunningArm : public ::testing::TestWithParam<const char*> {
@@ -38,7 +41,7 @@ TEST_P(RunningArm, RunsALineToItsEnd) {
 
 TEST_P(RunningArm, IsSuspendedResumedAndHalted) {
     auto& line = bench.program(kCartesianLinear);
-    ASSERT_TRUE(bench.start(kCartesianLinear, kUp));
+    ASSERT_TRUE(bench.start(kCartesianLinear, kSlowlyUp));
     ASSERT_TRUE(line.suspend(bench.caller()));
     ASSERT_TRUE(runUntil(kCartesianLinear, State::suspended)) << line.reasonText();
     EXPECT_TRUE(bench.arm().state().standstill);
@@ -51,7 +54,7 @@ TEST_P(RunningArm, IsSuspendedResumedAndHalted) {
 }
 
 TEST_P(RunningArm, IsStoppedByItsController) {
-    ASSERT_TRUE(bench.start(kCartesianLinear, kUp));
+    ASSERT_TRUE(bench.start(kCartesianLinear, kSlowlyUp));
     bench.arm().protectiveStop("fence opened");
     ASSERT_TRUE(runUntil(kCartesianLinear, State::halted));
     EXPECT_NE(bench.program(kCartesianLinear).reasonText().find("fence opened"), std::string::npos);

@@ -203,6 +203,7 @@ TEST_F(ArmOfACell, HasFiguresByHttpIfItsCellSaysWhere) {
     const auto server = serve(measured);
     ASSERT_TRUE(server);
     httplib::Client http(address, 9465);
+    http.set_read_timeout(30);
     const auto page = http.Get("/metrics");
     ASSERT_TRUE(page);
     EXPECT_THAT(page->body, HasSubstr("metier_device_state{device=\"iiwa\",state=\"normal\"} 1"));
@@ -223,15 +224,19 @@ TEST_F(ArmOfACell, BrakesBeforeItsServerEnds) {
     auto server = serve(config("iiwa", iiwa()));
     ASSERT_TRUE(server);
     const auto client = connect(*server);
+    Queue<skill::TransitionEvent> events(10);  // outlives what reports to it
     auto move = open(*client, "JointPtpMoveSkill");
-    Queue<skill::TransitionEvent> events(10);
     move.onTransition([&events](const skill::TransitionEvent& event) {
         static_cast<void>(events.tryPush(event));
     });
-    ASSERT_TRUE(
-        move.startWith({"", {{"TargetJointPosition", Value(std::vector<double>(7, 1.5))}}}));
+    // Slow enough that it is under way still, however long this thread is held up.
+    ASSERT_TRUE(move.startWith({"",
+                                {{"TargetJointPosition", Value(std::vector<double>(7, 1.5))},
+                                 {"SpeedOverride", Value(0.05)}}}));
     server.reset();
-    EXPECT_EQ(events.popUntil(inAMinute())->to, skill::State::running);
+    const auto running = events.popUntil(inAMinute());
+    ASSERT_TRUE(running);
+    EXPECT_EQ(running->to, skill::State::running);
     const auto halted = events.popUntil(inAMinute());
     ASSERT_TRUE(halted);
     EXPECT_EQ(halted->to, skill::State::halted);

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <thread>
 
 namespace metier::server {
@@ -222,8 +223,8 @@ TEST_F(CellOfFakes, SaysWhyAServerIsNotReady) {
 TEST_F(CellOfFakes, EndsAtOnceWhileAServerStarts) {
     add("arm");
     add("slow");
-    std::jthread later([this] {
-        while (diary("slow starts").empty()) {
+    std::jthread later([this](const std::stop_token& stop) {
+        while (diary("slow starts").empty() && !stop.stop_requested()) {
             std::this_thread::yield();
         }
         wake();

@@ -47,7 +47,7 @@ protected:
         cell::ServerConfig config;
         config.name = name;
         config.address = "127.0.0.1";
-        config.stall_limit = 2.0;  // other tests may have the processors
+        config.stall_limit = 30.0;  // other tests may have the processors
         config.kind = std::move(kind);
         return config;
     }
@@ -67,7 +67,7 @@ protected:
         arm.model = METIER_MODELS_DIR "/ur5.toml";
         arm.driver.type = "simulator";
         arm.skills = {"PositionStreamSkill"};
-        arm.stream_silence = 2.0;
+        arm.stream_silence = 10.0;  // likewise
         return arm;
     }
 
@@ -84,7 +84,10 @@ protected:
     }
 
     static std::unique_ptr<opcua::Client> connect(const Server& server) {
-        auto client = opcua::Client::connect(server.url());
+        opcua::ClientOptions options;
+        options.connect_timeout = std::chrono::minutes(1);
+        options.call_timeout = std::chrono::minutes(1);
+        auto client = opcua::Client::connect(server.url(), options);
         EXPECT_TRUE(client) << client.error().message;
         return client ? std::move(*client) : nullptr;
     }

@@ -17,7 +17,7 @@ protected:
     static cell::ServerConfig both(const Server& left, const Server& right) {
         return config("both", cell::SynchronizedServer{
                                   .servers = {{"left", left.url()}, {"right", right.url()}},
-                                  .start_delay = 1.0});
+                                  .start_delay = 5.0});  // for a busy machine
     }
     static cell::ArmServer movingUr() {
         auto arm = streamedUr();
