@@ -105,6 +105,12 @@ test('watches the square of another client', { timeout: 240_000 }, () => withVis
     await waitForState(page, key, 'ready');
 }, { ...kSmall, dark: true }));
 
+/** A place for the first joint that is far from where it is [rad]: it is on its way for longer than the page needs to draw it. */
+async function farFromHere(page: Page): Promise<string> {
+    await page.click('text=From current position');
+    return Number(await firstJoint(page).inputValue()) > 0 ? '-1.2' : '1.2';
+}
+
 /** Has the iiwa move its first axis there [rad], from the form, and waits until it has. */
 async function moveFirstJoint(page: Page, key: string, target: string): Promise<void> {
     await page.click('text=From current position');
@@ -119,8 +125,7 @@ async function moveFirstJoint(page: Page, key: string, target: string): Promise<
 test('runs a move from the form', { timeout: 240_000 }, () => withVisit(browser, url, async (page) => {
     await takeControl(page);
     const key = await choose(page, 'iiwa', 'JointPtpMoveSkill');
-    await page.click('text=From current position');
-    const target = Number(await firstJoint(page).inputValue()) > 0 ? '-0.4' : '0.4';
+    const target = await farFromHere(page);
     await moveFirstJoint(page, key, target);
     await picture(page, 'cell_moved_light');
     await page.click('text=From current position');
@@ -133,7 +138,7 @@ test('runs a move from the form', { timeout: 240_000 }, () => withVisit(browser,
 test('finds executions, looks at one, replays it, and compares two', { timeout: 240_000 }, () => withVisit(browser, url, async (page) => {
     await takeControl(page);
     const key = await choose(page, 'iiwa', 'JointPtpMoveSkill');
-    for (const target of ['0.6', '-0.1']) await moveFirstJoint(page, key, target);
+    for (let i = 0; i < 2; ++i) await moveFirstJoint(page, key, await farFromHere(page));
     await page.click('#tab-timeline');
     const rows = page.locator('tr[data-record]');
     await page.fill('[aria-label="Search executions"]', 'nothing of that name');
