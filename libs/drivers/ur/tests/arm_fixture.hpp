@@ -42,10 +42,12 @@ protected:
         ASSERT_TRUE(opened) << opened.error().message;
         device_ = std::move(*opened);
     }
-    /// open(), and waits until the arm may move.
+    /// open(), and waits until the arm may move and the driver has finished a cycle with it.
     void openReady(const Values& changed = {}) {
         open(changed);
         ASSERT_TRUE(becomes(SafetyState::normal)) << arm().safety().text;
+        const auto cycle = arm().state().cycle;
+        ASSERT_TRUE(fake_.await([&] { return arm().state().cycle > cycle; }));
     }
 
     device::Arm& arm() { return *device_.arm; }

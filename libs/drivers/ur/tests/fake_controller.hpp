@@ -13,6 +13,7 @@
 
 #include "metier/cell/settings.hpp"
 #include "metier/link/tcp_link.hpp"
+#include "reserved_port.hpp"
 #include "wire_bytes.hpp"
 
 namespace metier::ur_driver {
@@ -20,7 +21,9 @@ namespace metier::ur_driver {
 /// As much of a UR controller as the driver talks to, on four loopback ports, with everything that
 /// can go wrong. Written from docs/protocols/ur.md with an encoding of its own.
 ///
-/// The arm follows exactly, one cycle late. Time is the wall clock's, 8 ms per cycle.
+/// The arm follows exactly, one cycle late. A cycle takes 8 ms, or longer where the computer is
+/// late: cycles that are past are not made up for, and while a program moves the arm, the
+/// controller is at most three cycles ahead of the set-points.
 class FakeController {
 public:
     /// Properties and faults of the controller; change them with set().
@@ -104,6 +107,7 @@ private:
     std::vector<std::byte> answer(std::uint8_t type, const std::vector<std::byte>& payload);
     std::vector<std::byte> setUp(const std::string& names, std::size_t skip, bool outputs);
     void takeInput(const std::vector<std::byte>& payload);
+    bool ahead() const;
     void step();
     void runScript();
     std::vector<std::byte> dataPackage();
@@ -115,12 +119,13 @@ private:
     std::condition_variable cycled_;
     Knobs knobs_;
     std::array<std::unique_ptr<link::TcpListener>, kPorts> listeners_;
-    std::array<std::uint16_t, kPorts> ports_{};
-    std::uint64_t generation_ = 0;  // a new one breaks every connection
+    const std::array<ReservedPort, kPorts> ports_{};  // also while it is switched off
+    std::uint64_t generation_ = 0;                    // a new one breaks every connection
     std::uint64_t rtde_generation_ = 0;
 
     std::vector<std::string> outputs_;
     bool streaming_ = false;
+    int unanswered_ = 0;  // data packages since the last set-point
     double timestamp_ = 100.0;
     std::array<double, 6> q_{0.1, -1.3, 1.7, -2.0, -1.5, 0.2};
     std::array<double, 6> actual_ = q_;

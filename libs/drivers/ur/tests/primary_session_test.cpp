@@ -73,7 +73,7 @@ TEST_F(PrimarySessionTest, TellsGarbageAndTheEndWithThePeersName) {
 
 TEST_F(PrimarySessionTest, ADescriptionMayBeIncomplete) {
     auto told = std::async(std::launch::async, [this] {
-        return readDescription("127.0.0.1", listener_.port(), in(300ms));
+        return readDescription("127.0.0.1", listener_.port(), in(2000ms));
     });
     auto peer = accept();
     ASSERT_TRUE(peer.send(version(3), in(1000ms)));
@@ -98,7 +98,7 @@ TEST_F(PrimarySessionTest, ADescriptionMayEndWithTheLink) {
 
 TEST_F(PrimarySessionTest, NoDescriptionIsAnError) {
     auto told = std::async(std::launch::async, [this] {
-        return readDescription("127.0.0.1", listener_.port(), in(50ms));
+        return readDescription("127.0.0.1", listener_.port(), in(300ms));
     });
     auto peer = accept();
     EXPECT_EQ(told.get().error().code, Errc::timeout);
