@@ -20,7 +20,6 @@ constexpr auto kPageTimeout = 1s;
 constexpr auto kConnectTimeout = 1s;
 constexpr auto kFirstRecordTimeout = 100ms;
 constexpr int kStartAttempts = 10;
-constexpr auto kTareWait = 1s;
 // The buffered mode, which is not asked for, puts up to 40 records into a datagram.
 constexpr std::size_t kLargestDatagram = 40 * kRecordSize;
 
@@ -68,10 +67,12 @@ Result<void> NetftSensor::tare() {
         answer = tare_answers_.emplace_back().get_future();
     }
     tare_asked_.store(true);
-    if (answer.wait_for(kTareWait) == std::future_status::ready) {
+    if (answer.wait_for(options_.tare_wait) == std::future_status::ready) {
         return answer.get();
     }
-    return fail(Errc::timeout, named("no end of tare within 1 s"));
+    return fail(Errc::timeout,
+                named(fmt::format("no end of tare within {:g} s",
+                                  std::chrono::duration<double>(options_.tare_wait).count())));
 }
 
 void NetftSensor::run(const std::stop_token& stop) {

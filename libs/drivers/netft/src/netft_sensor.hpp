@@ -35,6 +35,8 @@ struct NetftOptions {
     std::optional<double> rate{};
     /// Without a record: the sensor is lost. Not set: silenceAt() that rate.
     std::optional<std::chrono::milliseconds> silence{};
+    /// Longest time that tare() waits for its end. Not a setting.
+    std::chrono::milliseconds tare_wait{1'000};
 };
 
 inline constexpr double kUsualRate = 1000.0;  ///< records [1/s]
@@ -63,7 +65,8 @@ public:
     const std::string& name() const noexcept override { return options_.name; }
     device::WrenchSample sample() const noexcept override;
     device::Safety safety() const override { return safety_.safety(); }
-    /// Waits at most 1 s. Errors also: device_fault while the sensor reports an error.
+    /// Waits at most options.tare_wait. Errors also: device_fault while the sensor reports an
+    /// error.
     Result<void> tare() override;
     device::Registration onSafetyChange(SafetyCallback callback) override {
         return safety_.onChange(std::move(callback));

@@ -38,6 +38,16 @@ public:
         const std::lock_guard lock(mutex_);
         deaf_ = deaf;
     }
+    /// Sets the number of requests of 0x42 that have no effect.
+    void ignoreTares(int count) {
+        const std::lock_guard lock(mutex_);
+        ignored_tares_ = count;
+    }
+    /// Falls silent with the next request of 0x42.
+    void fallSilentAtTare() {
+        const std::lock_guard lock(mutex_);
+        silent_at_tare_ = true;
+    }
     /// Sets the number of start requests that are ignored.
     void ignoreStarts(int count) {
         const std::lock_guard lock(mutex_);
@@ -100,8 +110,10 @@ private:
             sequence_ = 0;
         } else if (command == 0) {
             client_.reset();
-        } else if (command == 0x42 && !deaf_) {
-            force_ = 0;
+        } else if (command == 0x42) {
+            silent_ = silent_ || silent_at_tare_;
+            const bool ignored = deaf_ || ignored_tares_-- > 0;
+            force_ = ignored ? force_ : 0;
         }
         return true;
     }
@@ -134,6 +146,8 @@ private:
     std::uint32_t status_ = 0;
     std::int32_t force_ = 0;
     int ignored_starts_ = 0;
+    int ignored_tares_ = 0;
+    bool silent_at_tare_ = false;
     bool deaf_ = false;
     bool silent_ = false;
     bool nonsense_ = false;

@@ -69,8 +69,7 @@ TEST(HttpGet, GivesUpAtItsDeadline) {
 }
 
 TEST(HttpGet, TellsThatNobodyListens) {
-    const auto port = link::TcpListener::listen("127.0.0.1", 0).value().port();
-    EXPECT_EQ(httpGet("127.0.0.1", port, "/", in(5s)).error().code, Errc::connection_lost);
+    EXPECT_EQ(httpGet("127.0.0.1", 1, "/", in(5s)).error().code, Errc::connection_lost);
 }
 
 }  // namespace
