@@ -16,7 +16,7 @@ namespace metier::iiwa_driver {
 using namespace std::chrono_literals;
 
 /// Looks again after each millisecond until `done`, at most `limit`; whether it is.
-inline bool until(const std::function<bool()>& done, std::chrono::milliseconds limit = 5s) {
+inline bool until(const std::function<bool()>& done, std::chrono::milliseconds limit = 15s) {
     std::mutex mutex;
     std::condition_variable never;
     std::unique_lock lock(mutex);
@@ -110,7 +110,7 @@ public:
         IiwaOptions options;
         options.port = 0;
         options.cycle = 4ms;
-        options.answer_timeout = 300ms;
+        options.answer_timeout = 5s;  // a busy machine is no silent cabinet
         return options;
     }
 

@@ -140,6 +140,7 @@ TEST_F(PlannedMoves, TheMotionAfterAContactIsNotTakenForOne) {
 
 TEST_F(PlannedMoves, StopMotionCancelsAndTellsAtStandstill) {
     Outcome outcome;
+    bench.cabinet->change([](auto& behaviour) { behaviour.speed = 0.2; });
     ASSERT_TRUE(bench.arm->move(ArmBench::toJoints(2.5), outcome.taker()));
     ASSERT_TRUE(until([&] { return bench.cabinet->moving(); }));
     bench.arm->stopMotion();
@@ -153,6 +154,7 @@ TEST_F(PlannedMoves, StopMotionCancelsAndTellsAtStandstill) {
 TEST_F(PlannedMoves, OneMotionAtATimeAndNoStreamMeanwhile) {
     Outcome first;
     Outcome second;
+    bench.cabinet->change([](auto& behaviour) { behaviour.speed = 0.2; });
     ASSERT_TRUE(bench.arm->move(ArmBench::toJoints(2.0), first.taker()));
     const auto refused = bench.arm->move(ArmBench::toJoints(0.0), second.taker());
     EXPECT_EQ(refused.error().code, Errc::resource_unavailable);

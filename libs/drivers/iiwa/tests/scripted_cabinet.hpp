@@ -40,6 +40,7 @@ public:
         double contact_force = 50.0;                  ///< along z of the flange [N]
         double tool_length = 0.0;                     ///< length of an attached tool, along z [m]
         int dies_at = -1;                             ///< closes instead of answering this code
+        double speed = 2.0;                           ///< speed of every axis [rad/s]
         /// Changes the bytes of the next answers.
         std::function<void(std::vector<std::byte>&)> tamper{};
     };
@@ -47,7 +48,6 @@ public:
     struct Options {
         bool double_precision = false;
         std::chrono::milliseconds delay{0};  ///< delay of each answer
-        double speed = 2.0;                  ///< speed of every axis [rad/s]
         Behaviour behaviour{};               ///< at first
     };
 
