@@ -38,6 +38,13 @@ public:
     }
 
     TcpLink connect() { return TcpLink::connect("127.0.0.1", port, in(5s)).value(); }
+    /// Waits until the server has seen who dialled before: its thread looks for events between two
+    /// actions, and handles in the next turn what it found.
+    void awaitAccept() {
+        for (int i = 0; i < 4; ++i) {
+            inTurn([](TcpServer&) {});
+        }
+    }
     /// Runs on the controller's thread, and waits for it.
     void inTurn(const std::function<void(TcpServer&)>& action) {
         std::atomic<bool> done{false};
@@ -173,6 +180,7 @@ TEST(TcpServer, NeverServesAPeerThatDialledOverACutCable) {
     Echo echo;
     echo.faults.cut = true;
     auto cut_off = echo.connect();
+    echo.awaitAccept();
     EXPECT_EQ(echoOf(cut_off, "hello", 50ms), "timeout");
     echo.faults.cut = false;
     auto link = echo.connect();

@@ -57,6 +57,8 @@ protected:
         }
         return all;
     }
+    /// Runs the handler of the next datagram that comes.
+    void takeOne() { EXPECT_EQ(context_.run_one_for(10s), 1U); }
     void peerSends(std::string_view text) {
         peer_.send_to(asio::buffer(text.data(), text.size()), local(port_->port()));
     }
@@ -95,10 +97,10 @@ TEST_F(UdpPortOnTable, LosesWhatWaitsWhenTheCableIsCut) {
 TEST_F(UdpPortOnTable, LosesWhatComesOverACutCable) {
     faults_.cut = true;
     peerSends("lost");
-    context_.poll();
+    takeOne();
     faults_.cut = false;
     peerSends("found");
-    context_.poll();
+    takeOne();
     EXPECT_THAT(taken_, ElementsAre("found"));
 }
 
@@ -124,9 +126,12 @@ TEST_F(UdpPortOnTable, ServesItsPeerAlthoughAnotherOneIsNotThere) {
     port_->send(gone, {std::byte{1}});
     peerSends("hello");
     send({"hello, too"});
-    context_.poll();
+    EXPECT_THAT(await(1), ElementsAre("hello, too"));
+    const auto end = std::chrono::steady_clock::now() + 10s;
+    while (taken_.empty() && std::chrono::steady_clock::now() < end) {
+        context_.run_one_for(10ms);
+    }
     EXPECT_THAT(taken_, ElementsAre("hello"));
-    EXPECT_THAT(got(), ElementsAre("hello, too"));
 }
 
 TEST_F(UdpPortOnTable, TakesNothingOnceItIsGone) {

@@ -294,11 +294,18 @@ TEST(UrController, PrimaryAndSecondaryBeginWithTheVersionAndGoOnWithStates) {
         ASSERT_GT(version.size(), 15U) << port;
         EXPECT_EQ(version[4], std::byte{20});
         EXPECT_EQ(version[14], std::byte{3});
-        const auto begin = std::chrono::steady_clock::now();
+        std::optional<std::uint64_t> before;
         for (int i = 0; i < 4; ++i) {
-            EXPECT_EQ(readPackage(link).at(4), std::byte{16});
+            const auto state = readPackage(link);
+            ASSERT_GT(state.size(), 18U) << port;
+            EXPECT_EQ(state[4], std::byte{16});
+            EXPECT_EQ(state[9], std::byte{0}) << "the first part, which has the time";
+            const auto time = ByteReader(std::span(state).subspan(10)).get<std::uint64_t>();
+            if (before) {
+                EXPECT_NEAR(static_cast<double>(time - *before), 100'000.0, 8'000.0) << "[us]";
+            }
+            before = time;
         }
-        EXPECT_GT(std::chrono::steady_clock::now() - begin, 150ms);
     }
 }
 
@@ -411,9 +418,11 @@ TEST(UrController, AScriptUploadedOnTheSecondaryPortFollowsAStreamOfRegisters) {
     EXPECT_TRUE(primaryTells(primary, 7, "PROGRAM_XXX_STARTEDfollow"));
     ASSERT_TRUE(streamer.until([](const auto& sample) { return sample.runtime == 2; }));
     Vector6 q = start;
+    // So small that the arm can follow also after the test was held up and has caught up at once.
+    constexpr double kAmplitude = 0.02;
     for (int i = 1; i <= 125; ++i) {
         ASSERT_EQ(streamer.next().safety, 1);
-        q[5] = start[5] + 0.1 * (1.0 - std::cos(i * 0.008 * M_PI));
+        q[5] = start[5] + kAmplitude * (1.0 - std::cos(i * 0.008 * M_PI));
         streamer.write(q);
     }
     EXPECT_TRUE(

@@ -3,6 +3,7 @@
 #include <asio/io_context.hpp>
 #include <asio/post.hpp>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <future>
 #include <map>
@@ -22,11 +23,13 @@ public:
     /// Like a real world it answers reports: there is no effect before the first report.
     void report(const WorldReport& report) override {
         last_report = report;
+        ++reports;
         answered_ = true;
     }
     const WorldEffect& effect() const override { return answered_ ? next_effect : none_; }
 
     WorldReport last_report;
+    std::uint64_t reports = 0;  ///< number of reports so far
     WorldEffect next_effect;
 
 private:
