@@ -21,16 +21,18 @@ const skill::Value kTarget = std::vector{0.5, 1.0};
 
 class SkillContract : public ServedContract {
 protected:
-    SkillContract() : skill_(add(served::jointMoveDescription(), options())) {
+    explicit SkillContract(skill::ProgramOptions options = patient())
+        : skill_(add(served::jointMoveDescription(), std::move(options))) {
         serve();
         handle_.emplace(openSkill("JointPtpMoveSkill"));
         watch_.emplace(client(), skill_.id);
     }
 
-    static skill::ProgramOptions options() {
+    /// No deadline passes between two steps of a test.
+    static skill::ProgramOptions patient() {
         skill::ProgramOptions options;
-        options.rest_deadline = std::chrono::milliseconds(50);
-        options.configuration_timeout = std::chrono::milliseconds(50);
+        options.rest_deadline = std::chrono::minutes(1);
+        options.configuration_timeout = std::chrono::minutes(1);
         return options;
     }
 
@@ -258,7 +260,17 @@ TEST_F(SkillContract, HaltIsTakenWhileSuspendBrakes) {
     EXPECT_EQ(watch_->nextName(), "RunningToHalted");
 }
 
-TEST_F(SkillContract, ABodyThatDoesNotComeToRestIsStoppedByItsDevice) {
+class SkillWithAShortRestDeadline : public SkillContract {
+protected:
+    SkillWithAShortRestDeadline() : SkillContract(shortly()) {}
+    static skill::ProgramOptions shortly() {
+        auto options = patient();
+        options.rest_deadline = std::chrono::milliseconds(50);
+        return options;
+    }
+};
+
+TEST_F(SkillWithAShortRestDeadline, ABodyThatDoesNotComeToRestIsStoppedByItsDevice) {
     start();
     ASSERT_TRUE(handle_->suspend());
     ASSERT_TRUE(skill_.hand->await("forceStop"));
@@ -324,7 +336,18 @@ TEST_F(SkillContract, TheDiagnosticNamesItsCreatorAndTheLastCaller) {
     EXPECT_NE(later.last_method_session_id, whole.last_method_session_id);
 }
 
-TEST_F(SkillContract, WrittenParametersFallBackAfterTheConfigurationTimeout) {
+class SkillWithAShortConfiguration : public SkillContract {
+protected:
+    SkillWithAShortConfiguration() : SkillContract(shortly()) {}
+    /// Long enough for the server to sample what was written.
+    static skill::ProgramOptions shortly() {
+        auto options = patient();
+        options.configuration_timeout = std::chrono::seconds(1);
+        return options;
+    }
+};
+
+TEST_F(SkillWithAShortConfiguration, WrittenParametersFallBackAfterTheConfigurationTimeout) {
     const auto target = skill_.node("Options/SpeedOverride");
     auto changes = std::make_shared<Queue<opcua::Value>>(100);
     const auto subscription = client().subscribeData(
