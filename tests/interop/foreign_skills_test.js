@@ -7,7 +7,7 @@ const fs = require('node:fs');
 const os = require('node:os');
 const path = require('node:path');
 const { after, before, test } = require('node:test');
-const { runMetier, startProcess, startServer } = require('./metier_process');
+const { runMetier, startMetier, startProcess, startServer } = require('./metier_process');
 
 const kProgram = path.join(__dirname, 'foreign_skills.js');
 const kLostConnection = 3;
@@ -51,16 +51,15 @@ for (const skill of kSkills) {
 
 for (const skill of ['Whole', 'WithoutEvents', 'NamesOnly']) {
   test(`${skill} is suspended and goes on, as watch shows`, async () => {
-    const watching = runMetier(['watch', server.url, skill, '--count', '4']);
-    const running = run(skill, '--set', 'Duration=1.5');
+    const watching = await startMetier(['watch', server.url, skill, '--count', '4'], /watching/);
+    const running = run(skill, '--set', 'Duration=4');
     await awaitState(server.url, skill, 'Running');
     assert.strictEqual((await runMetier(['suspend', server.url, skill])).status, 0);
     await awaitState(server.url, skill, 'Suspended');
     assert.strictEqual((await runMetier(['resume', server.url, skill])).status, 0);
     const { status, errors } = await running;
     assert.strictEqual(status, 0, errors);
-    await run(skill, '--set', 'Duration=0.1');  // in case watch began after the first Start
-    const { output } = await watching;
+    const { output } = await watching.end;
     for (const step of [/Running -> Suspended/, /Suspended -> Running/, /Running -> Ready/]) {
       assert.match(output, step);
     }
@@ -77,7 +76,7 @@ test('what is not there to suspend or reset is named', async () => {
 
 /** What the page knows of its server once it is connected. */
 async function awaitCell(url) {
-  const deadline = Date.now() + 10000;
+  const deadline = Date.now() + 30000;
   let seen;
   while (Date.now() < deadline) {
     [seen] = (await (await fetch(`${url}/api/cell`)).json()).servers;
@@ -133,7 +132,7 @@ test('a run that takes too long is halted', async () => {
 });
 
 test('what has no Halt says so', async () => {
-  const late = await run('StartOnly', '--set', 'Duration=2', '--timeout', '0.5');
+  const late = await run('StartOnly', '--set', 'Duration=20', '--timeout', '0.5');
   assert.notStrictEqual(late.status, 0);
   assert.match(late.errors, /StartOnly has no Halt/);
   const halted = await runMetier(['halt', server.url, 'StartOnly']);
@@ -187,7 +186,7 @@ name = "component"
 kind = "composition"
 compositions = [${skills.map((skill) => `"${skill}.toml"`).join(', ')}]
 servers = ["${url}"]
-stall_limit = 1.0
+stall_limit = 2.0
 `);
   const component = await startServer(['serve', cell, '--server', 'component', '--port', '0']);
   return { url: component.url, stop: async () => {
@@ -240,7 +239,7 @@ test('the server that dies ends run as unknown', async () => {
 });
 
 async function awaitState(url, skill, state) {
-  const deadline = Date.now() + 10000;
+  const deadline = Date.now() + 30000;
   while (Date.now() < deadline) {
     if (new RegExp(`${skill} +${state}`).test((await runMetier(['list', url])).output)) {
       return;

@@ -77,4 +77,35 @@ function runMetier(args, security = kLab) {
   });
 }
 
-module.exports = { runMetier, startProcess, startServer };
+/**
+ * Starts a metier command that goes on for a while.
+ *
+ * @param {string[]} args
+ * @param {RegExp} begun is in the line that it prints, to either output, once it is under way
+ * @returns {Promise<{end: Promise<{status: number, output: string}>}>} once that line is there;
+ *     `end` has all that it printed
+ */
+function startMetier(args, begun) {
+  const child = spawn(metierProgram(), [...kLab, ...args], { stdio: ['ignore', 'pipe', 'pipe'] });
+  let output = '';
+  const end = new Promise((resolve) => child.once('close', (status) => resolve({ status, output })));
+  return new Promise((resolve, reject) => {
+    const timer = setTimeout(() => {
+      child.kill('SIGKILL');
+      reject(new Error(`no ${begun} within ${kReadyTimeoutMs} ms: ${output}`));
+    }, kReadyTimeoutMs);
+    for (const stream of [child.stdout, child.stderr]) {
+      stream.setEncoding('utf8').on('data', (text) => {
+        output += text;
+        if (begun.test(output)) {
+          clearTimeout(timer);
+          resolve({ end });
+        }
+      });
+    }
+    child.once('error', reject);
+    end.then(({ status }) => reject(new Error(`ended with status ${status}: ${output}`)));
+  });
+}
+
+module.exports = { runMetier, startMetier, startProcess, startServer };
