@@ -30,10 +30,11 @@ void PrintTo(const ArmCase& arm, std::ostream* out) {
 }
 
 const std::vector<ArmCase>& allArms() {
-    static const std::vector<ArmCase> kArms{{"ur5", 1.0, "protective-stop"},
-                                            {"iiwa", 1.0, "protective-stop", ArmCase::Cut::goes_on},
-                                            {"edo", 0.6, "brake"},
-                                            {"edo_classic", 0.6, "brake"}};
+    static const std::vector<ArmCase> kArms{
+        {.name = "ur5", .axis_1 = 1.0, .stop_fault = "protective-stop", .speed = 0.1},
+        {"iiwa", 1.0, "protective-stop", ArmCase::Cut::goes_on},
+        {"edo", 0.6, "brake"},
+        {"edo_classic", 0.6, "brake"}};
     return kArms;
 }
 
@@ -65,7 +66,7 @@ void ArmBench::startLongMove() {
     auto target = home_;
     target.front() += arm_.axis_1;
     ASSERT_TRUE(skill_.set("TargetJointPosition", target));
-    ASSERT_TRUE(skill_.set("SpeedOverride", 0.2));
+    ASSERT_TRUE(skill_.set("SpeedOverride", arm_.speed));
     const auto started = skill_.start();
     ASSERT_TRUE(started) << started.error().message;
     awaitProgress(kStarted);

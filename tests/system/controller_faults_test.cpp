@@ -129,7 +129,7 @@ std::string nameOf(const ::testing::TestParamInfo<ControllerFault>& info) {
            toString(info.param.when);
 }
 
-const ArmCase kUr5{"ur5", 1.0};
+const ArmCase kUr5{.name = "ur5", .axis_1 = 1.0, .speed = 0.1};
 const ArmCase kIiwa{"iiwa", 1.0};
 const ArmCase kEdo{"edo", 0.6};
 const ArmCase kClassicEdo{"edo_classic", 0.6};
@@ -214,7 +214,7 @@ std::vector<ControllerFault> faultsOfAnEdo() {
         add({"silent_joint", arm, When::moving, inject("joint-silent", "2"), Reason::error,
              "a joint is absent", inject("joint-silent", "0")});
         add({"silent_joints", arm, When::moving, inject("joint-silent", "all"), Reason::device_lost,
-             "no joint states for 300 ms", inject("restart"), true});
+             "no joint states for 1000 ms", inject("restart"), true});
         add({"overcurrent", arm, When::moving, inject("overcurrent", "1"), Reason::error,
              "overcurrent", inject("restart"), true});
         add({"lost_calibration", arm, When::ready, inject("uncalibrate"), Reason::error,

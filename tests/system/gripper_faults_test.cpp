@@ -16,7 +16,7 @@ using skill::Reason;
 using skill::State;
 using ::testing::HasSubstr;
 
-constexpr auto kNoticed = 2s;
+constexpr auto kNoticed = 5s;
 
 /// A gripper on its maker's wire, with its jaws open.
 class GripperOnItsWire : public ::testing::Test {
@@ -251,12 +251,12 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(GripperFault{"fast_stop", "fast-stop", "", Reason::error, "fast stop"},
                       GripperFault{"too_hot", "temperature-fault", "", Reason::error, "temperature",
                                    "temperature-fault", "off"},
-                      GripperFault{"cut_link", "cut-link", "", Reason::device_lost, "for 400 ms",
+                      GripperFault{"cut_link", "cut-link", "", Reason::device_lost, "for 1000 ms",
                                    "restore-link"},
-                      GripperFault{"late_link", "delay", "3000", Reason::device_lost, "for 400 ms",
+                      GripperFault{"late_link", "delay", "3000", Reason::device_lost, "for 1000 ms",
                                    "restore-link"},
                       GripperFault{"garbled_link", "garble", "1000", Reason::device_lost,
-                                   "for 400 ms", "restore-link"},
+                                   "for 1000 ms", "restore-link"},
                       GripperFault{"restart", "restart", "", Reason::device_lost, ""}),
     [](const auto& fault) { return std::string(fault.param.name); });
 

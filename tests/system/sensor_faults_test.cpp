@@ -14,7 +14,7 @@ using skill::Reason;
 using skill::State;
 using ::testing::HasSubstr;
 
-constexpr auto kNoticed = 2s;
+constexpr auto kNoticed = 5s;
 
 class CellWithASensor : public ::testing::Test {
 protected:
@@ -23,7 +23,7 @@ protected:
         const skill::ValueMap parameters{{"TargetPosition", skill::Frame{0, 0, distance, 0, 0, 0}},
                                          {"Relative", 1},
                                          {"MaxForce", skill::Vector3{20, 0, 0}},
-                                         {"SpeedOverride", 0.05}};
+                                         {"SpeedOverride", 0.02}};
         for (const auto& [name, value] : parameters) {
             if (auto set = skill_.set(name, value); !set) {
                 return set;
