@@ -60,6 +60,11 @@ protected:
         return found;
     }
     Finished verify() const { return runMetier({"audit", "verify", log().string()}); }
+    static void beat(opcua::Client& client, const opcua::NodeId& controller, std::uint64_t epoch) {
+        const auto metier = client.namespaceIndex("urn:metier:skills").value();
+        const auto method = client.translate(controller, {{metier, "Heartbeat"}}).value();
+        EXPECT_TRUE(client.call(controller, method, {opcua::Value::of(epoch)}));
+    }
     /// Parameters of a move of axis 1 that takes some seconds.
     static skill::ValueMap longMove(const std::vector<double>& home) {
         auto target = home;
@@ -79,8 +84,8 @@ TEST_F(AuditedArm, KeepsWhoStartedWhoHaltedAndWhoHadControl) {
     auto same = openSkill(*other, "JointPtpMoveSkill");
     const auto home = jointPosition(*owner, skill);
     {
-        const auto control =
-            client::ControlHandle::acquire(*owner, skill.address().controller()->node, {});
+        const auto control = client::ControlHandle::acquire(
+            *owner, skill.address().controller()->node, {.lease = 30s});
         ASSERT_TRUE(control) << control.error().message;
         const auto started =
             skill.startWith({.execution_id = "audited", .parameters = longMove(home)});
@@ -88,6 +93,7 @@ TEST_F(AuditedArm, KeepsWhoStartedWhoHaltedAndWhoHadControl) {
         EXPECT_EQ(same.suspend().error().code, Errc::locked);
         ASSERT_TRUE(same.halt());
         ASSERT_TRUE(same.awaitState(skill::State::halted, inAMinute()));
+        beat(*owner, skill.address().controller()->node, control->epoch());
     }
     for (const auto* call :
          {"AcquireControl of", "StartWith of JointPtpMoveSkill", "Suspend of JointPtpMoveSkill",
@@ -117,7 +123,7 @@ TEST_F(AuditedArm, KeepsWhatTheServerDidForAnOwnerThatWasLost) {
     auto run = link::ChildProcess::start(
                    metierCommand({"run", server.url(), "JointPtpMoveSkill", "--set",
                                   fmt::format("TargetJointPosition={}", fmt::join(target, ",")),
-                                  "--set", "SpeedOverride=0.1", "--lease", "300ms"}))
+                                  "--set", "SpeedOverride=0.1", "--lease", "2s"}))
                    .value();
     ASSERT_TRUE(skill.awaitState(skill::State::running, inAMinute()));
     run.signal(SIGKILL);

@@ -64,14 +64,14 @@ protected:
 
 TEST_F(OwnedRobot, HaltsWhenTheProcessThatCommandsItIsKilledOrStopped) {
     for (const int signal : {SIGKILL, SIGSTOP}) {
-        auto run = startLongRun({"--lease", "300ms"});
+        auto run = startLongRun({"--lease", "2s"});
         const auto before = std::chrono::steady_clock::now();
         run.signal(signal);
         const auto halted = next();
         EXPECT_EQ(halted.event.to, State::halted);
         EXPECT_EQ(halted.event.reason, Reason::owner_lost) << halted.event.reason_text;
         EXPECT_THAT(halted.event.reason_text, HasSubstr("no heartbeat"));
-        EXPECT_LT(halted.when - before, 2s);
+        EXPECT_LT(halted.when - before, 10s) << "the lease counts, not the 30 s of the session";
         const auto resting = jointPosition(*watcher_, skill_);
         EXPECT_LT(resting.front(), home_.front() + 1.0);
         for (std::size_t axis = 1; axis < resting.size(); ++axis) {
@@ -87,7 +87,7 @@ TEST_F(OwnedRobot, HaltsWhenTheProcessThatCommandsItIsKilledOrStopped) {
 }
 
 TEST_F(OwnedRobot, IsSuspendedIfItsStartSaysSoAndAnotherClientGoesOn) {
-    auto run = startLongRun({"--lease", "300ms", "--on-loss", "suspend"});
+    auto run = startLongRun({"--lease", "2s", "--on-loss", "suspend"});
     run.signal(SIGKILL);
     const auto suspended = next();
     EXPECT_EQ(suspended.event.to, State::suspended);
@@ -99,7 +99,8 @@ TEST_F(OwnedRobot, IsSuspendedIfItsStartSaysSoAndAnotherClientGoesOn) {
 }
 
 TEST_F(OwnedRobot, IsLeftAloneByTheCommandLineOfOthers) {
-    auto own = link::ChildProcess::start(metierCommand({"own", robot_.url()})).value();
+    auto own =
+        link::ChildProcess::start(metierCommand({"own", robot_.url(), "--lease", "30s"})).value();
     EXPECT_THAT(own.readLine(inAMinute()).value(), HasSubstr("taken, epoch"));
     const auto refused = skill_.set("TargetJointPosition", home_);
     ASSERT_FALSE(refused);

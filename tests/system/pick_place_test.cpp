@@ -140,7 +140,8 @@ TEST_F(PickingCell, IsOfferedByARobotItselfToTheSameClientAlsoUnderALease) {
     const auto edo = connectTo(cell_.url("edo"));
     auto own = openSkill(*edo, kSkill);
     EXPECT_EQ(own.address().type_name, "PickPlaceSkillType");
-    const auto control = client::ControlHandle::acquire(*edo, own.address().controller()->node, {});
+    const auto control =
+        client::ControlHandle::acquire(*edo, own.address().controller()->node, {.lease = 30s});
     ASSERT_TRUE(control) << control.error().message;
     auto parameters = partFrom(above(0.42, 0.0, 0.2));
     parameters["PlacePose"] = above(0.42, 0.08, 0.2);

@@ -63,8 +63,8 @@ TEST_F(KilledServer, TakesNoCommandOfItsLifeBefore) {
             EXPECT_EQ(skill.start().error().code, Errc::invalid_argument) << "nothing is written";
             expectStill(*client, skill, home);
         }
-        const auto control =
-            client::ControlHandle::acquire(*client, skill.address().controller()->node, {});
+        const auto control = client::ControlHandle::acquire(
+            *client, skill.address().controller()->node, {.lease = 30s});
         ASSERT_TRUE(control) << control.error().message;
         before = moveOf(home, "move " + std::to_string(life));
         before.epoch = control->epoch();

@@ -89,7 +89,8 @@ TEST_F(OddNames, OfAClientAreNotToldToOthers) {
     const auto odd = connectAs(server_.url(), kOdd);
     const auto other = connectAs(server_.url(), "other");
     const auto& controller = server_.system().controller;
-    const auto control = client::ControlHandle::acquire(*odd, controller, {});
+    const auto control =
+        client::ControlHandle::acquire(*odd, controller, {.lease = std::chrono::seconds(30)});
     ASSERT_TRUE(control) << control.error().message;
     const auto refused = client::ControlHandle::acquire(*other, controller, {});
     ASSERT_FALSE(refused);
