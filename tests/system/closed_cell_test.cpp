@@ -89,7 +89,7 @@ TEST_F(ClosedCell, BelievesNoOpenServerWhereAClosedOneWas) {
     std::string url;
     std::string port;
     {
-        const auto arm = here_.serve("iiwa");
+        const auto arm = here_.serve("iiwa", lastingPort());
         url = arm.url();
         port = arm.port();
         ASSERT_EQ(here_.run({"list", url}).status, 0);
@@ -111,7 +111,7 @@ TEST_F(ClosedCell, BecomesALabByTheHandOfItsOwnUser) {
     std::string url;
     std::string port;
     {
-        const auto arm = here_.serve("iiwa");
+        const auto arm = here_.serve("iiwa", lastingPort());
         url = arm.url();
         port = arm.port();
         ASSERT_EQ(here_.run({"list", url}).status, 0);

@@ -55,7 +55,7 @@ TEST(DiscoveryOfServers, ForgetsAServerThatWasKilled) {
 }
 
 TEST(DiscoveryOfServers, IsFilledAgainAfterItWasKilledAndStartedAgain) {
-    std::optional<DiscoveryProcess> lds(std::in_place);
+    std::optional<DiscoveryProcess> lds(std::in_place, 3'600, lastingPort());
     const auto url = lds->url();
     const auto port = lds->port();
     const auto arm = serveDiscovered("iiwa-a", url);

@@ -104,7 +104,7 @@ TEST_F(ExchangedRobot, IsNotWhereAMoveOfTheFormerGoesOn) {
 
 // The address of the robot is fixed; another arm is put in its place.
 TEST(ReplacedRobot, IsTakenAsTheOtherArmThatItIs) {
-    ServerProcess ur5("ur5");
+    ServerProcess ur5("ur5", {"--port", lastingPort()});
     const ServerProcess component("ur5-move", {"--port", "0", "--robot", ur5.url()});
     ASSERT_EQ(robotOf(component.url()), "UrController");
     ur5.kill();

@@ -27,9 +27,9 @@ Finished Installation::run(const std::vector<std::string>& arguments,
     return runToEnd(line);
 }
 
-ServerProcess Installation::serve(const std::string& server) const {
+ServerProcess Installation::serve(const std::string& server, const std::string& port) const {
     return ServerProcess(
-        command({"serve", simulatedCell().string(), "--server", server, "--port", "0"}));
+        command({"serve", simulatedCell().string(), "--server", server, "--port", port}));
 }
 
 opcua::ClientOptions Installation::asCommand() const {

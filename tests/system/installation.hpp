@@ -20,8 +20,8 @@ public:
     std::vector<std::string> command(const std::vector<std::string>& arguments) const;
     /// \param password for METIER_PASSWORD; empty: not set
     Finished run(const std::vector<std::string>& arguments, const std::string& password = "") const;
-    /// `metier serve` of one of the simulated cell, at a free port.
-    ServerProcess serve(const std::string& server) const;
+    /// `metier serve` of one of the simulated cell. \param port 0: a free one
+    ServerProcess serve(const std::string& server, const std::string& port = "0") const;
     /// Options for clients of this process with the command's identity, which is made first if it
     /// does not exist.
     opcua::ClientOptions asCommand() const;

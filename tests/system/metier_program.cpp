@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <unistd.h>
+
 #include <csignal>
 #include <fstream>
 #include <iterator>
@@ -10,6 +12,7 @@
 
 #include "metier/client/kinematics_reader.hpp"
 #include "metier/client/skill_finder.hpp"
+#include "metier/link/tcp_link.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -72,6 +75,22 @@ std::filesystem::path simulatedCell() {
 std::filesystem::path deviceCell(const std::string& name) {
     return std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "devices" /
            (name + ".toml");
+}
+
+std::string lastingPort() {
+    // Below the ports that the system hands out, of which every client and server here takes some.
+    constexpr int kFirst = 12'000;
+    constexpr int kPorts = 16'000;
+    constexpr int kOfAProcess = 16;
+    static int used = 0;
+    for (int attempt = 0; attempt < kPorts; ++attempt) {
+        const auto port = static_cast<std::uint16_t>(
+            kFirst + (::getpid() % (kPorts / kOfAProcess) * kOfAProcess + used++) % kPorts);
+        if (link::TcpListener::listen("127.0.0.1", port)) {
+            return std::to_string(port);
+        }
+    }
+    throw std::runtime_error("no free port");
 }
 
 std::string sourceText(const std::filesystem::path& file) {

@@ -41,6 +41,11 @@ std::filesystem::path simulatedCell();
 /// A cell file of tests/system/devices: one device, or few, on virtual controllers.
 std::filesystem::path deviceCell(const std::string& name);
 
+/// A port on loopback that nobody listens on, for a server that is ended and comes back, or for one
+/// that takes its place: unlike a port that the system chooses, other tests get it for nothing else
+/// meanwhile. Another one at each call.
+std::string lastingPort();
+
 /// A file of the source tree.
 std::string sourceText(const std::filesystem::path& file);
 

@@ -127,7 +127,8 @@ protected:
 
     const std::string folder_ = ::testing::TempDir() + fmt::format("metier_cut_off_{}", ::getpid());
     std::optional<ServerProcess> robot_{
-        std::in_place, "iiwa", std::vector<std::string>{"--port", "0", "--state", folder_}};
+        std::in_place, "iiwa",
+        std::vector<std::string>{"--port", lastingPort(), "--state", folder_}};
     TcpRelay relay_{static_cast<std::uint16_t>(std::stoi(robot_->port()))};
     Queue<TransitionEvent> seen_{100};
     std::unique_ptr<opcua::Client> bystander_;
@@ -175,7 +176,7 @@ TEST_F(CutOff, RunningIsOverWhenItsServerWasKilledAndStartedAgain) {
 
 TEST_F(CutOff, RunningUnderALeaseIsHaltedAndTheRunSaysSo) {
     auto arguments = longRun("halt");
-    arguments.insert(arguments.end(), {"--lease", "300ms"});
+    arguments.insert(arguments.end(), {"--lease", "2s"});
     RunningCommand run(arguments);
     ASSERT_EQ(next().to, State::running);
     relay_.cut();
@@ -329,7 +330,7 @@ TEST_F(CutOff, WatchTellsInJsonWhatHappenedMeanwhile) {
 }
 
 TEST_F(CutOff, OwnSaysThatControlIsLostWithItsConnection) {
-    RunningCommand own({"own", relay_.url()});
+    RunningCommand own({"own", relay_.url(), "--lease", "10s"});
     ASSERT_TRUE(own.until("Ctrl-C gives it back")) << own.text();
     relay_.cut();
     EXPECT_EQ(own.end(), 1);
@@ -338,7 +339,7 @@ TEST_F(CutOff, OwnSaysThatControlIsLostWithItsConnection) {
 }
 
 TEST_F(CutOff, OwnSaysThatControlIsLostWithItsServer) {
-    RunningCommand own({"own", relay_.url()});
+    RunningCommand own({"own", relay_.url(), "--lease", "10s"});
     ASSERT_TRUE(own.until("Ctrl-C gives it back")) << own.text();
     restart();
     EXPECT_EQ(own.end(), 1);

@@ -79,7 +79,8 @@ protected:
         return tab.tell("/api/control", {{"server", "all"}, {"action", "take"}});
     }
 
-    std::optional<ServerProcess> arm_{std::in_place, "iiwa"};
+    std::optional<ServerProcess> arm_{std::in_place, "iiwa",
+                                      std::vector<std::string>{"--port", lastingPort()}};
     ServerProcess page_ = dashboardOf({arm_->url()});
 };
 
@@ -216,7 +217,7 @@ protected:
         EXPECT_EQ(here_.run({"user", "add", "anna"}, "correct horse").status, 0);
         EXPECT_EQ(here_.run({"user", "add", "otto", "--role", "Observer"}, "battery staple").status,
                   0);
-        server_.emplace(here_.serve("iiwa"));
+        server_.emplace(here_.serve("iiwa", lastingPort()));
         page_.emplace(
             here_.command({"dashboard", server_->url(), "--port", "0", "--records", "off"}));
     }
@@ -339,7 +340,8 @@ TEST(DashboardOfALab, IsServedToThisMachineAlone) {
 
 TEST_F(ClosedDashboard, MakesWhoeverGuessesWait) {
     PageAnswer answer;
-    for (int attempt = 0; attempt < 4; ++attempt) {
+    // The fourth at the latest; more only if the machine lets the first wait of a second pass by.
+    for (int attempt = 0; attempt < 6 && answer.status != 429; ++attempt) {
         answer = logIn("anna", "wrong " + std::to_string(attempt));
     }
     EXPECT_EQ(answer.status, 429) << answer.body;
