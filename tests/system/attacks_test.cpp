@@ -69,7 +69,7 @@ TEST(SlowReader, IsNotCut) {
     constexpr std::size_t kMuch = 600'000;  // [byte], 5 s
     std::jthread([&] {
         cable.enterFarEnd();
-        RawPeer peer(Cable::kNearAddress, server.port(), 64 * 1024);
+        RawPeer peer(Cable::kNearAddress, server.port(), 64 * 1024, 10s);
         ASSERT_TRUE(peer.logIn());
         for (int i = 0; i < 60; ++i) {  // some 10 kB each
             peer.request(request::kBrowse, browseOf(10));

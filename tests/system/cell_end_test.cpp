@@ -275,7 +275,8 @@ struct SilentPeer {
     link::TcpListener listener;
 };
 
-/// A program that waits for `peer` ends within a second of SIGTERM.
+/// A program that waits for `peer` ends at SIGTERM, which takes much less than a second on a
+/// machine that does nothing else.
 void expectPromptEnd(const std::vector<std::string>& arguments, SilentPeer& peer) {
     auto program =
         link::ChildProcess::start(metierCommand(arguments), link::ErrorOutput::with_output).value();
@@ -285,9 +286,9 @@ void expectPromptEnd(const std::vector<std::string>& arguments, SilentPeer& peer
     program.signal(SIGTERM);
     EXPECT_EQ(program.waitUntil(inAMinute()), 1);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - told;
-    EXPECT_LT(took.count(), 1.0);
+    EXPECT_LT(took.count(), 10.0) << "it waits for 30 s otherwise";
     for (const auto& process : processes) {
-        EXPECT_TRUE(process.endsWithin(1s)) << process.pid();
+        EXPECT_TRUE(process.endsWithin(10s)) << process.pid();
     }
     std::string said;
     for (auto line = program.readLine(inAMinute()); line; line = program.readLine(inAMinute())) {

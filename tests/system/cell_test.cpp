@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "metier/base/queue.hpp"
+#include "metier/base/wake_up_delay.hpp"
 #include "metier/client/kinematics_reader.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier_program.hpp"
@@ -184,7 +185,7 @@ void haltsOnThePathAndReadiesAgain(Mover& mover) {
 /// A robot's server, and the move component in front of it.
 class MoveComponent : public ::testing::Test {
 protected:
-    ServerProcess robot_{"ur5"};
+    ServerProcess robot_{"ur5", {"--port", lastingPort()}};
     ServerProcess component_{"ur5-move", {"--port", "0", "--robot", robot_.url()}};
     Mover mover_{component_.url()};
 };
@@ -192,13 +193,17 @@ protected:
 TEST_F(MoveComponent, HaltsWithinASecondOfTheRobotsDeathAndGoesOnOnceItIsBack) {
     mover_.startLongMove();
     mover_.awaitMotion();
+    WakeUpDelay load;
     const auto killed = std::chrono::steady_clock::now();
     robot_.kill();
     const auto halted = mover_.next();
     EXPECT_EQ(halted.event.to, State::halted);
     EXPECT_EQ(halted.event.reason, skill::Reason::device_lost) << halted.event.reason_text;
     EXPECT_THAT(halted.event.reason_text, AllOf(HasSubstr("Ur:"), HasSubstr(robot_.url())));
-    EXPECT_THAT(halted.when - killed, Lt(std::chrono::seconds(1)));
+    // Besides what a busy machine takes for the threads of three processes.
+    constexpr int kLateOnTheWay = 10;
+    EXPECT_THAT(halted.when - killed,
+                Lt(std::chrono::seconds(1) + kLateOnTheWay * load.takeLongest()));
     EXPECT_FALSE(mover_.skill().reset());
     EXPECT_EQ(*mover_.skill().state(), State::halted);
 

@@ -16,8 +16,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint16_t kControlPort = 7400;
-// An arm that has been standing for so long has come to rest.
-constexpr std::chrono::duration<double> kAtRest{0.3};
 
 /// Loopback address that only this test's process uses; another one at each call.
 std::string freeAddress() {
@@ -43,7 +41,7 @@ DyingServer::DyingServer(const std::string& arm)
       address_(freeAddress()),
       controller_(startController(file_, address_)),
       begun_(std::chrono::steady_clock::now()),
-      server_(start("arm", {"--port", "0", "--controller", address_})),
+      server_(start("arm", {"--port", lastingPort(), "--controller", address_})),
       started_in_(std::chrono::steady_clock::now() - begun_) {}
 
 StartedServer DyingServer::start(const std::string& server,
@@ -115,14 +113,14 @@ bool DyingServer::awaitMotion() const {
     return false;
 }
 
-DyingServer::Rest DyingServer::awaitRest() const {
+DyingServer::Rest DyingServer::awaitRest(std::chrono::milliseconds least) const {
     const auto deadline = inAMinute();
     while (std::chrono::steady_clock::now() < deadline) {
         const auto asked = std::chrono::steady_clock::now();
         const auto seen = state();
         const std::chrono::duration<double> standing(seen.at("standing_for").get<double>());
         const std::chrono::duration<double> cycle(seen.at("longest_cycle").get<double>());
-        if (standing > kAtRest) {
+        if (standing > least) {
             return {asked - std::chrono::round<std::chrono::nanoseconds>(standing),
                     std::chrono::round<std::chrono::nanoseconds>(cycle),
                     seen.at("joint_position").get<std::vector<double>>()};

@@ -54,8 +54,8 @@ public:
         std::chrono::nanoseconds longest_cycle;  ///< of the controller, in its last motion
         std::vector<double> position;            ///< [rad]
     };
-    /// Waits until the arm has been standing for a while.
-    Rest awaitRest() const;
+    /// Waits until the arm has been standing for so long.
+    Rest awaitRest(std::chrono::milliseconds least = std::chrono::milliseconds(300)) const;
     /// The next line of the server's log with this text; throws after a minute.
     std::string awaitLogLine(const std::string& text);
 

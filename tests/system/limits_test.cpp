@@ -50,7 +50,7 @@ protected:
         server_.serve();
     }
 
-    RawPeer stranger() const { return {"127.0.0.1", server_.port()}; }
+    RawPeer stranger() const { return {"127.0.0.1", server_.port(), 0, 30s}; }
     RawPeer member() const {
         auto peer = stranger();
         EXPECT_TRUE(peer.logIn());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -48,12 +49,30 @@ public:
         }
         throw std::runtime_error("there is no such record of " + filter.skill);
     }
+    /// Waits until so many of that skill are over; throws after a minute.
+    void awaitEnds(const std::string& skill, std::size_t count) const {
+        const auto deadline = inAMinute();
+        while (countOfEnds(skill) < count) {
+            if (std::chrono::steady_clock::now() > deadline) {
+                throw std::runtime_error("there are too few records of " + skill);
+            }
+        }
+    }
     /// The newest one of that skill that is over.
     records::ExecutionRow awaitEnd(const std::string& skill) const {
         return await({.skill = skill}, [](const auto& record) { return record.isOver(); });
     }
 
 private:
+    std::size_t countOfEnds(const std::string& skill) const {
+        const auto store = records::Store::open(file_.string());
+        const auto listed = store ? (*store)->list({.skill = skill}, {})
+                                  : Result<records::Listing>(fail(store.error()));
+        return listed ? static_cast<std::size_t>(
+                            std::count_if(listed->executions.begin(), listed->executions.end(),
+                                          [](const auto& record) { return record.isOver(); }))
+                      : 0;
+    }
     std::optional<records::ExecutionRow> find(
         const records::Filter& filter,
         const std::function<bool(const records::ExecutionRow&)>& is) const {

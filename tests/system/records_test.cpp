@@ -185,7 +185,7 @@ TEST_F(RecordedArm, ShowsTheLastExecutionsToThoseWhoBrowse) {
 }
 
 TEST_F(RecordedArm, LosesAtMostTheLastSecondToACrashAndIsClosedAtTheNextStart) {
-    const auto port = server_->port();
+    const auto port = lastingPort();
     arm_.reset();
     server_.emplace("iiwa",
                     std::vector<std::string>{"--port", port, "--records", file_.path().string()});
@@ -284,6 +284,10 @@ TEST_F(RecordedComposition, HasItsChildrenOnOtherServersAndTheyHaveTheirParents)
     ASSERT_TRUE(result) << result.error().message;
     const auto top = file_.awaitEnd("WaveSkill");
     EXPECT_EQ(top.parent, "");
+    // Each server writes its records by itself.
+    file_.awaitEnds("ThereAndBackSkill", 2);
+    file_.awaitEnds("SwingSkill", 4);
+    file_.awaitEnds(kMove, 4);
     const auto store = file_.open();
     // WaveSkill runs ThereAndBackSkill of the same server, which runs SwingSkill of another server,
     // which runs the move of a third.

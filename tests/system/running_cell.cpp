@@ -7,6 +7,7 @@
 #include <fstream>
 #include <span>
 #include <stdexcept>
+#include <system_error>
 
 #include "metier/link/tcp_link.hpp"
 #include "metier_program.hpp"
@@ -58,6 +59,11 @@ RunningCell::RunningCell(const std::filesystem::path& file, const std::vector<st
     for (const auto& controller : endpoints.at("virtual")) {
         virtual_addresses_[controller.at("name")] = controller.at("address");
     }
+}
+
+RunningCell::~RunningCell() {
+    std::error_code error;
+    std::filesystem::remove(endpoints_, error);
 }
 
 void RunningCell::inject(const std::string& controller, const std::string& fault,

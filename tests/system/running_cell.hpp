@@ -19,6 +19,9 @@ public:
     /// Throws unless everything is ready within a minute.
     explicit RunningCell(const std::filesystem::path& file,
                          const std::vector<std::string>& more = {});
+    ~RunningCell();
+    RunningCell(const RunningCell&) = delete;
+    RunningCell& operator=(const RunningCell&) = delete;
 
     /// Servers by name.
     const std::map<std::string, std::string>& urls() const { return urls_; }

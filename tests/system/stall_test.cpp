@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "metier/base/wake_up_delay.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "metier/joint_simulator/robot_options.hpp"
@@ -18,6 +19,7 @@
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/robot_skills/arm_skills.hpp"
 #include "metier/robot_skills/stall_watch.hpp"
+#include "tcp_relay.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -26,9 +28,12 @@ using namespace std::chrono_literals;
 using skill::State;
 using ::testing::HasSubstr;
 
-constexpr auto kLimit = 250ms;
+// Long enough for a machine that runs other tests to hang no thread by itself.
+constexpr auto kLimit = 1000ms;
 // The contract: from the stall to the stop.
-constexpr auto kStopped = 300ms;
+constexpr auto kStopped = kLimit + 50ms;
+// Threads on the way from the stall to the stop, each of which may wake up late.
+constexpr int kLateOnTheWay = 3;
 
 template <typename Answer>
 auto orThrow(Answer answer) {
@@ -69,7 +74,8 @@ protected:
         if (auto started = server_->start(); !started) {
             throw std::runtime_error(started.error().message);
         }
-        client_ = orThrow(opcua::Client::connect(server_->endpointUrl()));
+        relay_.emplace(server_->port());
+        client_ = orThrow(opcua::Client::connect(relay_->url()));
         skill_ = orThrow(client::SkillHandle::open(
             *client_, orThrow(client::findSkill(*client_, "JointPtpMoveSkill"))));
     }
@@ -127,6 +133,7 @@ protected:
         orThrow(opcua_skill::SkillServer::create(*server_, clock_));
     joint_simulator::SimulatorDrive drive_{*arm_};
     std::unique_ptr<robot_skills::StallWatch> watch_;
+    std::optional<testing::TcpRelay> relay_;  // shows what the client has sent
     std::unique_ptr<opcua::Client> client_;
     std::optional<client::SkillHandle> skill_;
     std::latch hang_{1};
@@ -147,13 +154,15 @@ private:
 TEST_F(HangingServer, HasItsArmStoppedAndSaysSoOnceItIsBack) {
     startLongMove();
     const auto missed = arm_->state().missed_cycles;
+    WakeUpDelay load;
     const auto hung = hang();
     auto stopped = stopped_.get_future();
     ASSERT_EQ(stopped.wait_for(60s), std::future_status::ready);
     const auto took = stopped.get() - hung;
     awaitStandstill();
     // A machine that is late with the arm's cycles is late with the stop by as much.
-    const auto late = (arm_->state().missed_cycles - missed) * arm_->info().cycle;
+    const auto late = (arm_->state().missed_cycles - missed) * arm_->info().cycle +
+                      kLateOnTheWay * load.takeLongest();
     EXPECT_LE(took, kStopped + late);
     fmt::print("stopped {} ms after the stall\n",
                std::chrono::round<std::chrono::milliseconds>(took).count());
@@ -170,7 +179,13 @@ TEST_F(HangingServer, TakesAStartThatCameMeanwhileOnlyAfterwards) {
     ASSERT_EQ(stopped_.get_future().wait_for(60s), std::future_status::ready);
     awaitStandstill();
     const auto place = arm_->state().position;
+    const auto sent_before = relay_->sent().size();
     auto late = std::async(std::launch::async, [this] { return skill_->start(); });
+    const auto deadline = inAMinute();
+    while (relay_->sent().find("Start", sent_before) == std::string::npos) {
+        ASSERT_LT(std::chrono::steady_clock::now(), deadline)
+            << "Start does not come to the server";
+    }
     goOn();
     EXPECT_FALSE(late.get()) << "the skill is not Ready";
     ASSERT_TRUE(skill_->awaitState(State::halted, inAMinute()));

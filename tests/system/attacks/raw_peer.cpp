@@ -58,10 +58,10 @@ std::int64_t now() {
     return kUnixEpoch + std::chrono::duration_cast<Ticks>(since).count();
 }
 
-void setTimeouts(int socket) {
-    const timeval second{1, 0};
-    ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &second, sizeof(second));
-    ::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &second, sizeof(second));
+void setTimeouts(int socket, std::chrono::seconds patience) {
+    const timeval longest{patience.count(), 0};
+    ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &longest, sizeof(longest));
+    ::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &longest, sizeof(longest));
     const int on = 1;
     ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
 }
@@ -101,12 +101,13 @@ std::chrono::milliseconds sessionTimeout(const std::string& answer) {
     return std::chrono::milliseconds(std::llround(valueAt<double>(token, nodeIdSize(token))));
 }
 
-RawPeer::RawPeer(const std::string& host, std::uint16_t port, int receive_buffer)
+RawPeer::RawPeer(const std::string& host, std::uint16_t port, int receive_buffer,
+                 std::chrono::seconds patience)
     : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     if (receive_buffer > 0) {
         ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof(receive_buffer));
     }
-    setTimeouts(socket_);
+    setTimeouts(socket_, patience);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);

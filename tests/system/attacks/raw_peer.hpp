@@ -53,11 +53,13 @@ std::chrono::milliseconds sessionTimeout(const std::string& answer);
 /// A peer on a plain socket, which speaks OPC UA without security as far as an attack needs it, and
 /// reads only on request.
 ///
-/// Threading: one thread. Nothing waits for longer than a second.
+/// Threading: one thread. Nothing waits for longer than `patience`.
 class RawPeer {
 public:
     /// \param host IPv4 address. \param receive_buffer [byte] of the socket, 0: as it is
-    RawPeer(const std::string& host, std::uint16_t port, int receive_buffer = 0);
+    /// \param patience longest wait for what the server sends or takes
+    RawPeer(const std::string& host, std::uint16_t port, int receive_buffer = 0,
+            std::chrono::seconds patience = std::chrono::seconds(1));
     ~RawPeer();
     RawPeer(RawPeer&& other) noexcept;
     RawPeer& operator=(RawPeer&& other) noexcept;
@@ -77,7 +79,7 @@ public:
     /// Sends a request and does not read its answer.
     /// \return false if the server has closed the connection
     bool request(std::uint16_t type, const WireBytes& body);
-    /// Sends a request and reads its answer; nothing if there is none within a second.
+    /// Sends a request and reads its answer; nothing if there is none in time.
     /// \return the body, behind its ResponseHeader, of a Good one
     std::optional<std::string> ask(std::uint16_t type, const WireBytes& body);
     /// The same. \return the StatusCode of the answer, or of the ERR that came instead; that of

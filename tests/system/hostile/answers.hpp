@@ -10,11 +10,12 @@
 
 namespace metier::hostile {
 
-/// Longest wait of a well-behaved client for an answer; sanitizers take some of the time.
+/// Longest wait of a well-behaved client for an answer, most of it for the machine's other work;
+/// sanitizers take some of the time.
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr std::chrono::milliseconds kLongestAnswer{4'000};
 #else
-inline constexpr std::chrono::milliseconds kLongestAnswer{1'000};
+inline constexpr std::chrono::milliseconds kLongestAnswer{3'000};
 #endif
 
 /// Types of responses, by their Binary encoding.
