@@ -228,6 +228,12 @@ test('write, Start, and the events arrive at the skill, the device and the Serve
     },
   });
   assert.strictEqual(statusCode, StatusCodes.Good);
+  const slowly = await session.write({  // so that it still runs at the second Start
+    nodeId: await child(await child(skill.nodeId, 'Options'), 'SpeedOverride'),
+    attributeId: AttributeIds.Value,
+    value: { value: { dataType: DataType.Double, value: 0.05 } },
+  });
+  assert.strictEqual(slowly, StatusCodes.Good);
   assert.strictEqual(await callMethod(skill.nodeId, 'Start'), StatusCodes.Good);
   assert.strictEqual(await callMethod(skill.nodeId, 'Start'), StatusCodes.BadInvalidState);
   for (const { until } of collected) {
