@@ -182,7 +182,11 @@ TEST_F(History, FollowsWhatComesFromBeforeTheFirstRecord) {
     recording->end(key, finished(1s));
     EXPECT_EQ(next(), "m-1 Ready");
     recording->end(recording->begin(move("m-2")), halted(2s, "axis 1"));
-    EXPECT_EQ(next(), "m-2 Halted");
+    auto last = next();
+    if (last == "m-2 Running") {  // if it was followed just between begin and end
+        last = next();
+    }
+    EXPECT_EQ(last, "m-2 Halted");
     following.signal(SIGINT);
     EXPECT_EQ(following.waitUntil(inAMinute()), kSuccess);
 }

@@ -98,7 +98,8 @@ void expectToEndAtTheWall(opcua::Client& client, double wall) {
     const double outward = wall > 0.0 ? 1.0 : -1.0;
     auto parameters = by(0.1 * outward, 0, 0);
     parameters["MaxForce"] = skill::Vector3{20, 0, 0};
-    parameters["SpeedOverride"] = 0.05;
+    // A process that is late by 0.3 s lets it press by 15 N more.
+    parameters["SpeedOverride"] = 0.01;
     auto skill = openSkill(client, "CartesianLinearForceMoveSkill");
     const auto ended = skill.run(parameters, inAMinute());
     ASSERT_TRUE(ended) << ended.error().message;
