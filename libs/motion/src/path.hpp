@@ -61,6 +61,9 @@ public:
     const std::vector<JointVector>& knots() const noexcept { return knots_; }
     /// Derivatives at the knots.
     const std::vector<JointDerivatives>& derivatives() const noexcept { return derivatives_; }
+    /// Whether positions from that knot to the next one are interpolated, so that the tool leaves
+    /// its path a little.
+    bool leavesToolPath(std::size_t knot) const noexcept { return interpolated_[knot] != 0; }
     /// Exact position, but beside a singularity; derivatives interpolated.
     PathPoint at(double s, const Kinematics& kinematics) const noexcept;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "line_tracker.hpp"
 #include "metier/base/numbers.hpp"
@@ -104,9 +105,22 @@ Planned<TrackedPath> track(const TrackRequest& request, const PlannerOptions& op
     return TrackedPath{std::move(path), std::move(bounds)};
 }
 
-Trajectory quickestAlong(const RobotModel& model, TrackedPath path, const Pose& flange_from_tool) {
-    SpeedPlan speed = planSpeed(path.joints.places(), path.bounds,
-                                [&](double s) { return path.joints.at(s, model.kinematics()).q; });
+/// \param limits of the tool frame from that knot to the next one
+Trajectory quickestAlong(
+    const RobotModel& model, TrackedPath path, const Pose& flange_from_tool,
+    const std::function<ToolLimits(const TrackedPath&, std::size_t knot)>& limits) {
+    const Kinematics& kinematics = model.kinematics();
+    ExactPath exact;
+    exact.position = [&](double s) { return path.joints.at(s, kinematics).q; };
+    exact.tool.applies = [&](std::size_t knot) { return path.joints.leavesToolPath(knot); };
+    exact.tool.factor = [&](std::size_t knot, const JointSteps& steps) {
+        std::array<Pose, 3> poses;
+        std::transform(
+            steps.positions.begin(), steps.positions.end(), poses.begin(),
+            [&](const JointVector& q) { return kinematics.forward(q) * flange_from_tool; });
+        return toolExcess(poses, steps.step, limits(path, knot));
+    };
+    SpeedPlan speed = planSpeed(path.joints.places(), path.bounds, exact);
     return makeTrajectory(model, std::move(path.joints), std::move(speed), flange_from_tool);
 }
 
@@ -205,8 +219,10 @@ Planned<Trajectory> Planner::lin(const LinRequest& request) const {
     for (SpeedBounds& at : path.bounds) {
         at.add({1, 0, 0, limits.velocity, limits.acceleration, limits.jerk});
     }
-    return withoutCollision(*model_,
-                            quickestAlong(*model_, std::move(path), tool.flange_from_tool));
+    const ToolLimits of_tool = toolLimitsOf(*model_, request);
+    return withoutCollision(
+        *model_, quickestAlong(*model_, std::move(path), tool.flange_from_tool,
+                               [&](const TrackedPath&, std::size_t) { return of_tool; }));
 }
 
 Planned<Trajectory> Planner::path(const PathRequest& request) const {
@@ -223,8 +239,12 @@ Planned<Trajectory> Planner::path(const PathRequest& request) const {
     }
     const double fastest = addToolBounds(*model_, request, path->joints, path->bounds);
     METIER_TRY(refuseCrawling(*model_, *path, fastest, options_));
-    return withoutCollision(*model_,
-                            quickestAlong(*model_, std::move(*path), tool.flange_from_tool));
+    return withoutCollision(*model_, quickestAlong(*model_, std::move(*path), tool.flange_from_tool,
+                                                   [&](const TrackedPath& of, std::size_t knot) {
+                                                       return toolLimitsBetween(
+                                                           of.bounds[knot], of.bounds[knot + 1],
+                                                           model_->axisCount());
+                                                   }));
 }
 
 Planned<Trajectory> Planner::jointLinear(const JointLinearRequest& request) const {

@@ -174,12 +174,12 @@ std::size_t evenKnots(const std::vector<double>& places, const std::vector<Speed
 class Excess {
 public:
     Excess(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds,
-           const PositionAt& position, const SpeedPlan& plan)
-        : places_(places), bounds_(bounds), position_(position), plan_(plan) {
+           const ExactPath& exact, const SpeedPlan& plan)
+        : places_(places), bounds_(bounds), exact_(exact), plan_(plan) {
         double before = 0;
         for (std::size_t k = 1; k < places.size(); ++k) {
             const double time = timeAt(plan.map.clockAt(places[k]));
-            check(before, time);
+            check(k - 1, before, time);
             before = time;
         }
         const Profile& profile = plan.profile;
@@ -218,8 +218,8 @@ private:
         return high;
     }
 
-    /// Checks from one time to another [s], between two knots.
-    void check(double from, double to) {
+    /// Checks from one time to another [s], from that knot to the next one.
+    void check(std::size_t knot, double from, double to) {
         constexpr int parts = 4;
         double share = 0;
         for (int part = 0; part <= parts; ++part) {
@@ -227,10 +227,11 @@ private:
             const double u = std::clamp(static_cast<double>(part) / parts, 1e-6, 1 - 1e-6);
             share = std::max(share, include(std::lerp(from, to, u)));
         }
-        if (share < kNear) {
-            return;
+        knot_ = knot;
+        checks_tool_ = exact_.tool.applies(knot);
+        if (share >= kNear || checks_tool_) {
+            includeExact(from, to);
         }
-        includeExact(from, to);
     }
 
     /// \return the largest share of a limit that a derivative by time uses at `time` [s]
@@ -282,9 +283,13 @@ private:
         double largest = 0;
         for (double time = from - 1.5 * step; time < to + 1.5 * step; time += step) {
             std::rotate(q.begin(), q.begin() + 1, q.end());
-            q.back() = position_(plan_.map.at(plan_.profile.at(time).position).position);
+            q.back() = exact_.position(plan_.map.at(plan_.profile.at(time).position).position);
             if (++taken >= 4) {
                 largest = std::max(largest, includeDifferences(q, step));
+                if (checks_tool_) {
+                    factor_ =
+                        std::max(factor_, exact_.tool.factor(knot_, {{q[0], q[1], q[2]}, step}));
+                }
             }
         }
         return largest;
@@ -309,15 +314,17 @@ private:
 
     const std::vector<double>& places_;
     const std::vector<SpeedBounds>& bounds_;
-    const PositionAt& position_;
+    const ExactPath& exact_;
     const SpeedPlan& plan_;
+    std::size_t knot_ = 0;      // the last before the place that is checked
+    bool checks_tool_ = false;  // there
     double factor_ = 1;
 };
 
 /// The plan, slowed down where it would not keep the bounds.
 SpeedPlan withinBounds(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds,
-                       const PositionAt& position, SpeedPlan plan) {
-    const double factor = Excess(places, bounds, position, plan).factor();
+                       const ExactPath& exact, SpeedPlan plan) {
+    const double factor = Excess(places, bounds, exact, plan).factor();
     return factor > 1 + kTolerance ? plan.slowed(factor) : plan;
 }
 
@@ -387,14 +394,14 @@ SpeedPlan evenSpeed(const ScalarLimits& limits) {
 }
 
 SpeedPlan planSpeed(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds,
-                    const PositionAt& position) {
+                    const ExactPath& exact) {
     const std::vector<double> caps = speedCaps(bounds);
     std::vector<double> reached = caps;
     reached.front() = reached.back() = 0;
     limitSlope(places, bounds, 1.0, reached);
     const double slowest = *std::min_element(caps.begin(), caps.end());
     const double fastest = *std::max_element(reached.begin(), reached.end());
-    SpeedPlan even = withinBounds(places, bounds, position,
+    SpeedPlan even = withinBounds(places, bounds, exact,
                                   planEven(places, bounds, std::sqrt(std::min(slowest, fastest))));
     if (slowest >= fastest || even.profile.duration() <= kGoodEnough * leastTime(places, reached)) {
         return even;
@@ -405,7 +412,7 @@ SpeedPlan planSpeed(const std::vector<double>& places, const std::vector<SpeedBo
     if (!varying) {
         return even;
     }
-    SpeedPlan within = withinBounds(places, bounds, position, std::move(*varying));
+    SpeedPlan within = withinBounds(places, bounds, exact, std::move(*varying));
     return within.profile.duration() < even.profile.duration() ? within : even;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -24,12 +25,29 @@ struct SpeedPlan {
 /// A path of constant derivatives. \param limits of the path parameter [1/s], [1/s2], [1/s3]
 SpeedPlan evenSpeed(const ScalarLimits& limits);
 
-/// Exact joint position at a path parameter.
-using PositionAt = std::function<JointVector(double)>;
+/// Three joint positions in a row, `step` [s] apart.
+struct JointSteps {
+    std::array<JointVector, 3> positions;
+    double step = 0;
+};
+
+/// Check of the tool frame where its path is not the one that the bounds are of.
+struct ToolCheck {
+    /// Whether it is needed from that knot to the next one.
+    std::function<bool(std::size_t knot)> applies;
+    /// Factor by which a motion after that knot has to be slower; up to 1 if it is slow enough.
+    std::function<double(std::size_t knot, const JointSteps& steps)> factor;
+};
+
+/// The path that the bounds were taken from, at any place.
+struct ExactPath {
+    std::function<JointVector(double place)> position;
+    ToolCheck tool;
+};
 
 /// The quickest run from rest to rest that keeps every bound.
 /// \param places path parameters of the knots; \param bounds there
 SpeedPlan planSpeed(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds,
-                    const PositionAt& position);
+                    const ExactPath& exact);
 
 }  // namespace metier::motion

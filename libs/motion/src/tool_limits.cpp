@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "metier/motion/rotation.hpp"
+
 namespace metier::motion {
 
 namespace {
@@ -47,6 +49,39 @@ SpeedBound boundOf(const ToolDerivatives& d, const ScalarLimits& limits, double 
 }
 
 }  // namespace
+
+ToolLimits toolLimitsOf(const RobotModel& model, const LinRequest& request) {
+    const auto ofVector = [](const double* three, double own) {
+        const bool alike = three[0] == three[1] && three[1] == three[2];
+        return alike ? capped(three[0], own) : own;
+    };
+    const CartesianLimits& own = model.cartesianLimits();
+    const double* v = request.max_velocity.data();
+    const double* a = request.max_acceleration.data();
+    return {request.speed_override * ofVector(v, own.velocity), ofVector(a, own.acceleration),
+            request.speed_override * ofVector(v + 3, own.angular_velocity),
+            ofVector(a + 3, own.angular_acceleration)};
+}
+
+ToolLimits toolLimitsBetween(const SpeedBounds& a, const SpeedBounds& b, std::size_t axes) {
+    const SpeedBound linear = between(a.values[axes], b.values[axes]);
+    const SpeedBound angular = between(a.values[axes + 1], b.values[axes + 1]);
+    return {linear.velocity, linear.acceleration, angular.velocity, angular.acceleration};
+}
+
+double toolExcess(const std::array<Pose, 3>& poses, double step, const ToolLimits& limits) {
+    const auto velocity = [&](std::size_t n) -> Eigen::Vector3d {
+        return (poses[n + 1].translation - poses[n].translation) / step;
+    };
+    const auto spin = [&](std::size_t n) -> Eigen::Vector3d {
+        return rotationVectorBetween(poses[n].rotation, poses[n + 1].rotation) / step;
+    };
+    const double acceleration = (velocity(1) - velocity(0)).norm() / step;
+    const double angular_acceleration = (spin(1) - spin(0)).norm() / step;
+    return std::max({velocity(0).norm() / limits.velocity, spin(0).norm() / limits.angular_velocity,
+                     std::sqrt(acceleration / limits.acceleration),
+                     std::sqrt(angular_acceleration / limits.angular_acceleration)});
+}
 
 ScalarLimits limitsOfLine(const RobotModel& model, const LinRequest& request,
                           const ToolPath& line) {

@@ -251,6 +251,8 @@ std::string PlanFuzz::check(const Planned<Trajectory>& planned, const ToolLimits
 }
 
 std::string PlanFuzz::next() {
+    std::seed_seq seed{seed_, number_++};
+    random_.seed(seed);
     model_ = &models_[std::uniform_int_distribution<std::size_t>(0, models_.size() - 1)(random_)];
     const CartesianLimits& own = model_->cartesianLimits();
     const auto report = [&](std::string fault, const std::string& what) {

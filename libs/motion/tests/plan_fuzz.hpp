@@ -10,12 +10,14 @@
 
 namespace metier::motion {
 
-/// Random motions, many of them degenerate, each planned and sampled.
+/// Random motions, many of them degenerate, each planned and sampled. Each depends on the seed and
+/// on its number alone, so that one of them can be repeated.
 class PlanFuzz {
 public:
     /// \param models all that motions are planned for; must outlive this
-    PlanFuzz(const std::vector<RobotModel>& models, std::uint64_t seed)
-        : models_(models), random_(seed) {}
+    /// \param first number of the first motion
+    PlanFuzz(const std::vector<RobotModel>& models, std::uint64_t seed, std::uint64_t first = 0)
+        : models_(models), seed_(seed), number_(first) {}
 
     /// Plans one motion and samples it.
     /// \return what is wrong with it, with its robot and what was asked for; empty: nothing
@@ -40,6 +42,8 @@ private:
                       const JointVector& start);
 
     const std::vector<RobotModel>& models_;
+    std::uint64_t seed_;
+    std::uint64_t number_;  // of the next motion
     std::mt19937_64 random_;
     const RobotModel* model_ = nullptr;
     int planned_ = 0;

@@ -1,4 +1,5 @@
-// Plans random motions and samples each: `metier_plans COUNT SEED`.
+// Plans random motions and samples each: `metier_plans COUNT SEED [FIRST]`. A fault names its
+// motion's number; `metier_plans 1 SEED NUMBER` repeats that motion alone.
 
 #include <fmt/format.h>
 
@@ -9,17 +10,21 @@
 
 int main(int argc, char** argv) {
     const long count = argc > 1 ? std::atol(argv[1]) : 1'000'000;
-    const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
+    const auto number = [&](int i, std::uint64_t otherwise) {
+        return argc > i ? std::strtoull(argv[i], nullptr, 10) : otherwise;
+    };
+    const std::uint64_t seed = number(2, 1);
+    const std::uint64_t first = number(3, 0);
     std::vector<metier::motion::RobotModel> models;
     for (const std::string& name : metier::motion::kRobots) {
         models.push_back(metier::motion::loadRobot(name));
     }
-    metier::motion::PlanFuzz fuzz(models, seed);
+    metier::motion::PlanFuzz fuzz(models, seed, first);
     long faults = 0;
     for (long i = 0; i < count; ++i) {
         if (const std::string fault = fuzz.next(); !fault.empty()) {
             ++faults;
-            fmt::print("plan {}: {}\n", i, fault);
+            fmt::print("plan {}: {}\n", first + static_cast<std::uint64_t>(i), fault);
             std::fflush(stdout);
         }
     }
