@@ -4,8 +4,8 @@
 const { execFile, spawn } = require('node:child_process');
 const readline = require('node:readline');
 
-const kReadyTimeoutMs = 30000;
-const kRunTimeoutMs = 30000;
+const kReadyTimeoutMs = 60000;
+const kRunTimeoutMs = 60000;
 const kLab = ['--insecure-lab'];
 
 function metierProgram() {
