@@ -37,7 +37,7 @@ void Watchdog::tick() {
 }
 
 nanoseconds Watchdog::look() {
-    // Before the last tick is read: if this thread is held up between them, the tick is the newer.
+    // Before the tick: this thread may be held up here while the watched one ticks.
     const auto now = clock_.now().time_since_epoch().count();
     const auto last = last_tick_.load();
     if (last == 0) {
