@@ -15,7 +15,7 @@ TEST(BackgroundRead, GivesWhatIsThereNow) {
     std::atomic<int> there = 1;
     BackgroundRead<int> read(std::make_shared<int>(0),
                              [&](const Number&) { return std::make_shared<int>(there); });
-    const auto soon = std::chrono::steady_clock::now() + 10s;
+    const auto soon = std::chrono::steady_clock::now() + 30s;
     for (int now : {1, 2, 3}) {
         there = now;
         while (*read.get() != now) {  // at once, but for a computer that does other things
@@ -41,7 +41,7 @@ TEST(BackgroundRead, KeepsNobodyWaitingForADiskThatHangs) {
     }
     EXPECT_LT(shortest, kReadPatience);
     works.set_value();
-    const auto soon = std::chrono::steady_clock::now() + 10s;
+    const auto soon = std::chrono::steady_clock::now() + 30s;
     while (*read.get() == 7) {
         ASSERT_LT(std::chrono::steady_clock::now(), soon);
     }
@@ -55,8 +55,12 @@ TEST(BackgroundRead, TellsItsReaderWhatItHas) {
     });
     const auto first = read.get();
     EXPECT_EQ(*first, 5);
+    const auto soon = std::chrono::steady_clock::now() + 30s;
+    while (reads < 1) {  // at once, but for a computer that does other things
+        ASSERT_LT(std::chrono::steady_clock::now(), soon);
+        ASSERT_EQ(read.get(), first);
+    }
     EXPECT_EQ(read.get(), first);
-    EXPECT_GE(reads, 1);
 }
 
 }  // namespace
