@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <future>
+#include <memory>
 #include <string>
 
 #include "http_bench.hpp"
@@ -26,34 +27,51 @@ std::chrono::nanoseconds timeOf(Work work) {
     return std::chrono::steady_clock::now() - begin;
 }
 
+constexpr auto kIdle = 300ms;
+
 class IdleTime : public HttpBench {
 protected:
-    IdleTime()
-        : HttpBench(
-              {.connections = 1, .request_time = kFar, .idle_time = 300ms, .send_time = kFar}) {
+    IdleTime() : HttpBench({.request_time = kFar, .idle_time = kIdle, .send_time = kFar}) {
         serve();
+    }
+    /// A new connection on which these bytes were sent long before it was idle for too long.
+    /// Connects again if the computer held the test up.
+    std::unique_ptr<RawBrowser> sentInTime(const std::string& bytes) const {
+        const auto deadline = std::chrono::steady_clock::now() + 30s;
+        while (std::chrono::steady_clock::now() < deadline) {
+            std::unique_ptr<RawBrowser> browser;
+            const auto taken = timeOf([&] {
+                browser = std::make_unique<RawBrowser>(port_);
+                browser->send(bytes);
+            });
+            if (taken < kIdle / 2) {
+                return browser;
+            }
+        }
+        return nullptr;
     }
 };
 
 TEST_F(IdleTime, EndsAConnectionOnWhichNothingCame) {
-    RawBrowser browser(port_);
-    EXPECT_GE(timeOf([&] { EXPECT_TRUE(browser.awaitEnd()); }), 200ms);
+    EXPECT_GE(timeOf([&] { EXPECT_TRUE(RawBrowser(port_).awaitEnd()); }), 200ms);
 }
 
 TEST_F(IdleTime, EndsAConnectionAfterItsLastRequest) {
-    RawBrowser browser(port_);
-    browser.send(get("/echo/one"));
-    EXPECT_THAT(browser.receive("<one>"), HasSubstr("<one>"));
-    EXPECT_TRUE(browser.awaitEnd());
+    const auto request = get("/echo/one");
+    const auto browser = sentInTime(request.substr(0, 10));
+    ASSERT_TRUE(browser);
+    browser->send(request.substr(10));
+    EXPECT_THAT(browser->receive("<one>"), HasSubstr("<one>"));
+    EXPECT_TRUE(browser->awaitEnd());
 }
 
 TEST_F(IdleTime, IsNotThatOfARequestUnderWay) {
-    RawBrowser browser(port_);
     const auto request = get("/echo/one");
-    browser.send(request.substr(0, 10));
-    EXPECT_TRUE(browser.isLeftAlone(900ms));
-    browser.send(request.substr(10));
-    EXPECT_THAT(browser.receive("<one>"), HasSubstr("<one>"));
+    const auto browser = sentInTime(request.substr(0, 10));
+    ASSERT_TRUE(browser);
+    EXPECT_TRUE(browser->isLeftAlone(3 * kIdle));
+    browser->send(request.substr(10));
+    EXPECT_THAT(browser->receive("<one>"), HasSubstr("<one>"));
 }
 
 class RequestTime : public HttpBench {
