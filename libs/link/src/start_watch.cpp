@@ -6,20 +6,15 @@
 
 namespace metier::link {
 
-namespace {
-
-constexpr std::chrono::milliseconds kOrderly{500};
-
-}  // namespace
-
-StartWatch::StartWatch(const StopSignal& signal) : thread_([this, &signal] { watch(signal); }) {}
+StartWatch::StartWatch(const StopSignal& signal, std::chrono::milliseconds orderly)
+    : thread_([this, &signal, orderly] { watch(signal, orderly); }) {}
 
 StartWatch::~StartWatch() {
     over_.ring();
 }
 
-void StartWatch::watch(const StopSignal& signal) {
-    if (over_.wait(signal) || over_.waitUntil(std::chrono::steady_clock::now() + kOrderly)) {
+void StartWatch::watch(const StopSignal& signal, std::chrono::milliseconds orderly) {
+    if (over_.wait(signal) || over_.waitUntil(std::chrono::steady_clock::now() + orderly)) {
         return;
     }
     std::fputs("metier: stopped before it was ready\n", stderr);  // stderr may be closed: the

@@ -52,7 +52,7 @@ TEST_P(StopSignalDeathTest, LetsAStartEndInItsOwnWay) {
     EXPECT_EXIT(
         {
             const StopSignal stop;
-            std::optional<StartWatch> watch(std::in_place, stop);
+            std::optional<StartWatch> watch(std::in_place, stop, 1h);
             kill(getpid(), GetParam());
             stop.wait();
             watch.reset();

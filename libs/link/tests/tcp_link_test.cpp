@@ -27,18 +27,18 @@ std::span<const std::byte> bytesOf(std::string_view text) {
 
 struct Pair {
     TcpListener listener = TcpListener::listen("127.0.0.1", 0).value();
-    TcpLink near = TcpLink::connect("127.0.0.1", listener.port(), in(5s)).value();
-    TcpLink far = listener.accept(in(5s)).value();
+    TcpLink near = TcpLink::connect("127.0.0.1", listener.port(), in(30s)).value();
+    TcpLink far = listener.accept(in(30s)).value();
 };
 
 TEST(TcpLink, CarriesBytesBothWays) {
     Pair pair;
-    ASSERT_TRUE(pair.near.send(bytesOf("ping"), in(5s)));
+    ASSERT_TRUE(pair.near.send(bytesOf("ping"), in(30s)));
     std::array<std::byte, 4> buffer{};
-    ASSERT_TRUE(pair.far.receiveAll(buffer, in(5s)));
+    ASSERT_TRUE(pair.far.receiveAll(buffer, in(30s)));
     EXPECT_EQ(std::string_view(reinterpret_cast<const char*>(buffer.data()), 4), "ping");
-    ASSERT_TRUE(pair.far.send(bytesOf("pong"), in(5s)));
-    EXPECT_EQ(pair.near.receive(buffer, in(5s)), 4U);
+    ASSERT_TRUE(pair.far.send(bytesOf("pong"), in(30s)));
+    EXPECT_EQ(pair.near.receive(buffer, in(30s)), 4U);
 }
 
 TEST(TcpLink, TellsWhoDidNotAnswerInTime) {
@@ -54,7 +54,7 @@ TEST(TcpLink, TellsThatThePeerIsGone) {
     Pair pair;
     pair.far.shutdown();
     std::array<std::byte, 4> buffer{};
-    const auto closed = pair.near.receive(buffer, in(5s));
+    const auto closed = pair.near.receive(buffer, in(30s));
     ASSERT_FALSE(closed);
     EXPECT_EQ(closed.error().code, Errc::connection_lost);
     EXPECT_THAT(closed.error().message, HasSubstr("closed"));
@@ -85,8 +85,8 @@ TEST(TcpLink, DoesNotAllocateWithoutAnError) {
     std::array<std::byte, 64> buffer{};
     const auto before = allocationCount();
     for (int i = 0; i < 100; ++i) {
-        ASSERT_TRUE(pair.near.send(buffer, in(5s)));
-        ASSERT_TRUE(pair.far.receiveAll(buffer, in(5s)));
+        ASSERT_TRUE(pair.near.send(buffer, in(30s)));
+        ASSERT_TRUE(pair.far.receiveAll(buffer, in(30s)));
     }
     EXPECT_EQ(allocationCount(), before);
 }
@@ -97,14 +97,14 @@ TEST(TcpLink, TakesThePlaceOfAnother) {
     first.near = std::move(second.near);
     first.listener = std::move(second.listener);
     std::array<std::byte, 4> buffer{};
-    EXPECT_EQ(first.far.receive(buffer, in(5s)).error().code, Errc::connection_lost);
-    ASSERT_TRUE(second.far.send(bytesOf("here"), in(5s)));
-    EXPECT_TRUE(first.near.receiveAll(buffer, in(5s)));
+    EXPECT_EQ(first.far.receive(buffer, in(30s)).error().code, Errc::connection_lost);
+    ASSERT_TRUE(second.far.send(bytesOf("here"), in(30s)));
+    EXPECT_TRUE(first.near.receiveAll(buffer, in(30s)));
 }
 
 TEST(TcpLink, CannotConnectWhereNobodyListens) {
     const auto port = TcpListener::listen("127.0.0.1", 0).value().port();
-    const auto link = TcpLink::connect("127.0.0.1", port, in(5s));
+    const auto link = TcpLink::connect("127.0.0.1", port, in(30s));
     ASSERT_FALSE(link);
     EXPECT_EQ(link.error().code, Errc::connection_lost);
     EXPECT_THAT(link.error().message, HasSubstr(std::to_string(port)));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <thread>
 
 #include "metier/link/stop_signal.hpp"
@@ -8,21 +9,23 @@
 namespace metier::link {
 
 /// Ends the program when a stop signal comes during its start, whatever the start is waiting for.
-/// No device moves yet, so nothing is lost. A start that checks the signal itself has half a second
-/// to end in its own way.
+/// No device moves yet, so nothing is lost. A start that checks the signal itself has a moment to
+/// end in its own way.
 ///
 /// Threading: one thread creates and destroys it; the start is what happens in between.
 class StartWatch {
 public:
-    /// \param signal must outlive this
-    explicit StartWatch(const StopSignal& signal);
+    /// \param signal  must outlive this
+    /// \param orderly time that the start has, from the signal on, to end in its own way, >= 0
+    explicit StartWatch(const StopSignal& signal,
+                        std::chrono::milliseconds orderly = std::chrono::milliseconds(500));
     /// Ends the watch: the start is over.
     ~StartWatch();
     StartWatch(const StartWatch&) = delete;
     StartWatch& operator=(const StartWatch&) = delete;
 
 private:
-    void watch(const StopSignal& signal);
+    void watch(const StopSignal& signal, std::chrono::milliseconds orderly);
 
     WakeEvent over_;
     std::jthread thread_;
