@@ -7,6 +7,9 @@ namespace metier::opcua::testing {
 namespace {
 
 constexpr std::size_t kStreamedEvents = 2000;
+constexpr int kManyFlushes = 2000;
+// Far below the publishing interval of these tests, also on a machine that may make it wait.
+constexpr auto kAtOnce = 5s;
 
 /// A client that is connected and subscribed to events.
 std::unique_ptr<TestClient> subscribed(TestServer& server, TestClient::SubscriptionOptions options,
@@ -19,6 +22,16 @@ std::unique_ptr<TestClient> subscribed(TestServer& server, TestClient::Subscript
     return client;
 }
 
+UA_StatusCode modify(TestClient& client, UA_UInt32 id, TestClient::SubscriptionOptions to) {
+    UA_ModifySubscriptionRequest request;
+    UA_ModifySubscriptionRequest_init(&request);
+    request.subscriptionId = id;
+    request.requestedPublishingInterval = to.publishing_interval_ms;
+    request.requestedLifetimeCount = to.lifetime_count;
+    request.requestedMaxKeepAliveCount = to.keep_alive_count;
+    return UA_Client_Subscriptions_modify(client.get(), request).responseHeader.serviceResult;
+}
+
 TEST(EventLoopPublishing, BringsAnEventAtOnceWhateverThePublishingInterval) {
     TestServer server;
     const auto client = subscribed(server, {.publishing_interval_ms = 10'000});
@@ -26,7 +39,7 @@ TEST(EventLoopPublishing, BringsAnEventAtOnceWhateverThePublishingInterval) {
         const auto start = std::chrono::steady_clock::now();
         ASSERT_TRUE(client->fire());
         ASSERT_TRUE(client->runUntil([&] { return client->events().size() > i; }));
-        ASSERT_LT(client->events().back() - start, 1s);
+        ASSERT_LT(client->events().back() - start, kAtOnce);
     }
 }
 
@@ -42,7 +55,7 @@ TEST(EventLoopPublishing, BringsEventsFiredOutsideOfACallAtOnceToEveryClient) {
         for (auto& client : clients) {
             ASSERT_TRUE(client->runUntil([&] { return client->events().size() > i; }));
         }
-        ASSERT_LT(std::chrono::steady_clock::now() - start, 1s);
+        ASSERT_LT(std::chrono::steady_clock::now() - start, kAtOnce);
     }
 }
 
@@ -90,13 +103,15 @@ TEST(EventLoopPublishing, DoesNotWearOutAnIdleSubscription) {
         server, {.publishing_interval_ms = 10'000, .lifetime_count = 30, .keep_alive_count = 10});
     ASSERT_TRUE(client->fire());
     ASSERT_TRUE(client->runUntil([&] { return client->events().size() == 1; }));
-    for (int i = 0; i < 10'000; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < kManyFlushes; ++i) {
         server.inServer([&](UA_Server*) { server.flushAll(); });
     }
+    const auto most = 20 + (std::chrono::steady_clock::now() - start) / 100ms;
+    EXPECT_LE(server.statistics().fruitless_flushes, most) << "100 ms of rest between them";
     ASSERT_TRUE(client->fire());
     ASSERT_TRUE(client->runUntil([&] { return client->events().size() == 2; }));
     EXPECT_EQ(client->deleted(), 0);
-    EXPECT_LT(server.statistics().fruitless_flushes, 200);  // 100 ms of rest between them
 }
 
 TEST(EventLoopPublishing, LeavesASubscriptionWithoutPublishRequestsAlone) {
@@ -105,11 +120,11 @@ TEST(EventLoopPublishing, LeavesASubscriptionWithoutPublishRequestsAlone) {
     UA_Client_getConfig(client.get())->outStandingPublishRequests = 0;
     ASSERT_EQ(client.connect(server.url()), UA_STATUSCODE_GOOD);
     client.subscribe(
-        {.publishing_interval_ms = 10'000, .lifetime_count = 3, .keep_alive_count = 1});
+        {.publishing_interval_ms = 100'000, .lifetime_count = 3, .keep_alive_count = 1});
     for (int i = 0; i < 100; ++i) {
         ASSERT_TRUE(client.fire());
     }
-    for (int i = 0; i < 10'000; ++i) {
+    for (int i = 0; i < kManyFlushes; ++i) {
         server.inServer([&](UA_Server*) { server.flushAll(); });
     }
     EXPECT_EQ(server.statistics().flushes, 0);
@@ -123,7 +138,12 @@ TEST(EventLoopPublishing, SurvivesASubscriptionThatEndsInItsOwnCallback) {
     TestClient client;
     UA_Client_getConfig(client.get())->outStandingPublishRequests = 0;
     ASSERT_EQ(client.connect(server.url()), UA_STATUSCODE_GOOD);
-    client.subscribe({.publishing_interval_ms = 5, .lifetime_count = 3, .keep_alive_count = 1});
+    // It lives until it has its MonitoredItem, and not for long then.
+    const auto id = client.subscribe(
+        {.publishing_interval_ms = 100'000, .lifetime_count = 3, .keep_alive_count = 1});
+    ASSERT_EQ(modify(client, id,
+                     {.publishing_interval_ms = 5, .lifetime_count = 3, .keep_alive_count = 1}),
+              UA_STATUSCODE_GOOD);
     const auto count = [](UA_Server* native) {
         return UA_Server_getStatistics(native).ss.currentSessionCount;
     };
@@ -155,13 +175,8 @@ TEST(EventLoopPublishing, FollowsASubscriptionWhoseIntervalIsModified) {
     TestServer server;
     TestClient client;
     ASSERT_EQ(client.connect(server.url()), UA_STATUSCODE_GOOD);
-    UA_ModifySubscriptionRequest request;
-    UA_ModifySubscriptionRequest_init(&request);
-    request.subscriptionId = client.subscribe({.publishing_interval_ms = 100});
-    request.requestedPublishingInterval = 20'000;
-    request.requestedLifetimeCount = 100;
-    request.requestedMaxKeepAliveCount = 10;
-    ASSERT_EQ(UA_Client_Subscriptions_modify(client.get(), request).responseHeader.serviceResult,
+    const auto id = client.subscribe({.publishing_interval_ms = 100});
+    ASSERT_EQ(modify(client, id, {.publishing_interval_ms = 20'000, .lifetime_count = 100}),
               UA_STATUSCODE_GOOD);
     ASSERT_TRUE(client.fire());
     ASSERT_TRUE(client.runUntil([&] { return client.events().size() == 1; }));
