@@ -158,7 +158,10 @@ BareServer::~BareServer() {
 }
 
 void BareServer::pause() {
-    paused_ = true;
+    {
+        const std::lock_guard lock(mutex_);
+        paused_ = true;
+    }
     auto pausing = std::make_shared<std::promise<void>>();
     loop_.post([this, pausing] {
         pausing->set_value();

@@ -91,7 +91,7 @@ public:
     void notify(const std::function<void()>& change);
     /// Whether it held within the time.
     bool wait(const std::function<bool()>& holds,
-              std::chrono::milliseconds longest = std::chrono::seconds(5));
+              std::chrono::milliseconds longest = std::chrono::seconds(30));
 
 private:
     std::mutex mutex_;

@@ -200,7 +200,7 @@ TEST(ClientConnect, EndsAtItsDeadlineWhenNobodyAnswers) {
     const auto client = Client::connect(listener.url(), {.connect_timeout = 100ms});
     ASSERT_FALSE(client);
     EXPECT_EQ(client.error().status, status::kBadTimeout);
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 4s) << "its default is 5 s";
 }
 
 TEST(ClientConnect, IsRefusedWithAnUnknownUser) {

@@ -81,8 +81,9 @@ TEST(Registrar, AsksAgainUntilTheDiscoveryServerIsBack) {
         const Registrar registrar(options(), desk.door());
         ASSERT_TRUE(desk.calls.popUntil(soon()));
         desk.open = true;
-        ASSERT_TRUE(desk.calls.popUntil(soon()));
-        ASSERT_TRUE(desk.calls.popUntil(soon()));  // at least one call came once it was back
+        while (desk.calls.popUntil(SteadyTime{})) {  // those that came before
+        }
+        ASSERT_TRUE(desk.calls.popUntil(soon())) << "once it was back";
     }
     auto last = ServerRegistration::Presence::online;
     while (const auto call = desk.calls.popUntil(SteadyTime{})) {
@@ -118,6 +119,8 @@ TEST(Registrar, IsThereAgainAfterTheDiscoveryServerWasStartedAgain) {
     auto lds = start(0);
     auto real = options();
     real.discovery_url = lds->endpointUrl();
+    real.timeout = 10s;
+    real.farewell = 10s;
     const auto port = lds->port();
     {
         const Registrar registrar(real);
