@@ -56,7 +56,8 @@ TEST_F(ComingToRest, BrakesWhatRunsAndWaitsForItsStandstill) {
 
 TEST_F(ComingToRest, GivesUpWhatDoesNotComeToRest) {
     start();
-    EXPECT_FALSE(skills().comeToRest("the server is ended", 50ms));
+    // Long enough for the server's thread to be asked.
+    EXPECT_FALSE(skills().comeToRest("the server is ended", 1s));
     EXPECT_TRUE(skill_.hand->await("halt"));
 }
 

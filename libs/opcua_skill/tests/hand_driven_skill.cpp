@@ -7,7 +7,7 @@ namespace metier::opcua_skill::testing {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{5};
+constexpr std::chrono::seconds kPatience{30};
 
 class HandDrivenWork final : public skill::ExecutionWork {
 public:

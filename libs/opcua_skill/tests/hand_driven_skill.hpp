@@ -21,7 +21,7 @@ public:
     /// Parameters of the skill's last start.
     skill::ValueMap snapshot() const;
     /// Whether the work is asked to `what` ("start", "suspend", ...), or the skill to "reset",
-    /// within 5 s; each request is returned once.
+    /// within 30 s; each request is returned once.
     bool await(const std::string& what);
     /// From now on Start, or Reset, is refused with this error.
     void refuseStart(Error error);

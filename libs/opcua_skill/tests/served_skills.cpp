@@ -8,7 +8,7 @@ namespace metier::opcua_skill::testing {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{5};
+constexpr std::chrono::seconds kPatience{30};
 
 std::vector<std::vector<opcua::QualifiedName>> watchedFields(std::uint16_t device) {
     std::vector<std::vector<opcua::QualifiedName>> fields;

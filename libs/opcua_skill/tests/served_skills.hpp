@@ -45,7 +45,7 @@ public:
     };
 
     TransitionWatch(opcua::Client& client, const opcua::NodeId& notifier);
-    /// The next event; nothing within 5 s.
+    /// The next event; nothing within 30 s.
     std::optional<Seen> next();
     /// "ReadyToRunning", or "nothing".
     std::string nextName();
