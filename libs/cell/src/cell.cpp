@@ -136,6 +136,9 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     if (table.has("limits")) {
         server.limits = readLimits(table.table("limits"));
     }
+    if (table.has("nodesets")) {
+        server.nodesets = readFiles(table, "nodesets", folder);
+    }
     server.discovery = readDiscovery(table, of_cell.discovery);
     server.records = of_cell.records;
     server.metrics = readMetrics(table);

@@ -29,6 +29,40 @@ protected:
         ::testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
+TEST_F(CellFile, ListsNodesetsOfAnyKindOfServer) {
+    std::ofstream(folder_ / "line.xml") << "<UANodeSet/>";
+    const auto cell = load(R"(
+name = "demo"
+[[server]]
+name = "ur5"
+kind = "arm"
+driver = { type = "ur", controller = "10.0.0.5" }
+model = "ur5.toml"
+skills = []
+[[server]]
+name = "ur5-move"
+kind = "move"
+robot = "ur5"
+nodesets = ["line.xml"]
+)");
+    ASSERT_TRUE(cell) << cell.error().message;
+    EXPECT_TRUE(cell->servers[0].nodesets.empty());
+    EXPECT_THAT(cell->servers[1].nodesets, ElementsAre(folder_ / "line.xml"));
+}
+
+TEST_F(CellFile, NamesANodesetThatIsNotThere) {
+    const auto cell = load(R"(
+name = "demo"
+[[server]]
+name = "move"
+kind = "move"
+robot = "opc.tcp://127.0.0.1:4840"
+nodesets = ["none.xml"]
+)");
+    ASSERT_FALSE(cell);
+    EXPECT_THAT(cell.error().message, HasSubstr("cell.toml:7: server[0].nodesets: no such file"));
+}
+
 TEST_F(CellFile, DescribesEachServer) {
     const auto cell = load(R"(
 name = "demo"

@@ -4,6 +4,7 @@
 
 #include "common/convert.hpp"
 #include "metier/opcua/text.hpp"
+#include "nodesets/nodeset_file.hpp"
 #include "server/node_hooks.hpp"
 #include "server/server_core.hpp"
 
@@ -216,6 +217,12 @@ Result<> AddressSpace::addReference(const NodeId& source, const NodeId& type,
     core_.structureChanged();
     return outcome(opcua::addReference(core_.native(), source, type, target),
                    fmt::format("add reference to {} from", target.toString()), source);
+}
+
+Result<> AddressSpace::addNodeset(std::string_view xml, std::string name) {
+    core_.structureChanged();
+    METIER_ASSIGN(const auto file, NodesetFile::parse(xml, std::move(name)));
+    return core_.addNodes(file);
 }
 
 Result<> AddressSpace::deleteNode(const NodeId& id) {

@@ -8,6 +8,7 @@
 #include "common/guard.hpp"
 #include "common/security_config.hpp"
 #include "metier/opcua/text.hpp"
+#include "nodesets/nodeset_loader.hpp"
 #include "server/event_types.hpp"
 #include "server/nodesets.hpp"
 #include "server/server_config.hpp"
@@ -136,7 +137,7 @@ Result<> ServerCore::build() {
     }
     timers_ = std::make_shared<PendingTimers>(
         native(), [this](const std::function<void()>& work) { runGuarded(work); });
-    METIER_TRY(loadNodesets(native(), options_.nodesets));
+    METIER_TRY(loadNodes());
     METIER_TRY(inheritEventFields(native(), nodes_));
     METIER_TRY(addAbsentFields(nodes_));
     for (const auto& uri : options_.namespaces) {
@@ -155,6 +156,24 @@ Result<> ServerCore::build() {
     // The stack's own source says false.
     return nodes_.setDataSource(ids::kServerAuditing,
                                 {[](const Session&) { return DataValue{Value::of(true)}; }});
+}
+
+/// Adds the nodes of the NodeSets: first those that are compiled in, also for the files.
+Result<> ServerCore::loadNodes() {
+    METIER_ASSIGN(const auto files, readNodesetFiles(options_.nodeset_files));
+    auto names = options_.nodesets;
+    names.insert(names.end(), files.needed.begin(), files.needed.end());
+    METIER_TRY(loadNodesets(native(), names));
+    return loadNodesetFiles(native(), files, data_types_, log());
+}
+
+Result<> ServerCore::addNodes(const NodesetFile& file) {
+    NodesetLoader loader(native(), data_types_);
+    METIER_TRY(loader.load(file));
+    for (const auto& note : loader.notes()) {
+        log().warn("{}", note);
+    }
+    return {};
 }
 
 /// Installs the check of peers' certificates; for a closed server.

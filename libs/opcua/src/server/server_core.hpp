@@ -15,6 +15,8 @@
 #include "common/peer_check.hpp"
 #include "event_loop/event_loop.hpp"
 #include "metier/opcua/server.hpp"
+#include "nodesets/data_types.hpp"
+#include "nodesets/nodeset_file.hpp"
 #include "server/audit_trail.hpp"
 #include "server/event_watch.hpp"
 #include "server/node_hooks.hpp"
@@ -59,6 +61,8 @@ public:
 
     /// Nodes or references changed: what was learned about notifiers holds no more.
     void structureChanged() { notifiers_.clear(); }
+    /// Adds the nodes of a NodeSet whose required models are there.
+    Result<> addNodes(const NodesetFile& file);
     /// Publishes to those who watch the events of an Object, if the options ask for it.
     void publishEventsOf(const NodeId& source);
     /// Whether work on the present message may go on: no client may keep the others waiting with a
@@ -82,6 +86,7 @@ private:
 
     explicit ServerCore(ServerOptions options);
     Result<> build();
+    Result<> loadNodes();
     Result<> checkPeers();
     void followSessions();
     void run(const std::stop_token& stop, std::promise<Result<>>& opened);
@@ -105,6 +110,7 @@ private:
     StackMethods stack_methods_;
     AddressSpace nodes_;
     std::unordered_map<NodeId, std::vector<NodeId>> notifiers_;
+    DataTypeStore data_types_;  ///< outlives the server, which points into it
     std::unique_ptr<UA_Server, DeleteServer> server_;
     std::shared_ptr<PendingTimers> timers_;  ///< shared for the weak pointers of handles
     AuditTrail audit_;

@@ -83,6 +83,7 @@ Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
     options.bind_addresses = {config_.address};
     options.nodesets = std::move(nodesets);
     options.nodesets.insert(options.nodesets.begin(), {"device", "robotics", "metier"});
+    options.nodeset_files = config_.nodesets;
     options.event_publishing = config_.publish_at_once ? opcua::EventPublishing::at_once
                                                        : opcua::EventPublishing::at_interval;
     options.limits = limitsOf(config_.limits);

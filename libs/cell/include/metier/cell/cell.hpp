@@ -165,6 +165,8 @@ struct ServerConfig {
     double stall_limit = 0.25;
     /// Limits for its clients that differ from the defaults of opcua::ServerLimits.
     std::vector<Limit> limits;
+    /// NodeSet2.xml files with nodes that the server shows besides its own; absolute paths.
+    std::vector<std::filesystem::path> nodesets;
     /// Ways in which it is found, and finds others.
     Discovery discovery;
     /// Place of its records, the same for all servers of a cell.

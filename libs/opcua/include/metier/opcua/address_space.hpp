@@ -223,6 +223,12 @@ public:
     Result<NodeId> addMethod(const MethodSpec& spec);
     /// Adds a reference and its inverse. Errors: already_exists, not_found.
     Result<> addReference(const NodeId& source, const NodeId& type, const NodeId& target);
+    /// Adds all nodes of a NodeSet2.xml text, as ServerOptions::nodeset_files does, but for event
+    /// types: their fields must be known before the server is made.
+    /// \param name stands for the file in messages
+    /// Errors: invalid_argument with a line "name:line: why" for each mistake; the nodes before it
+    ///         stay.
+    Result<> addNodeset(std::string_view xml, std::string name);
     /// Deletes a node, the children that only it has, and all references to them. Errors:
     /// not_found.
     Result<> deleteNode(const NodeId& id);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <future>
 #include <memory>
@@ -108,6 +109,9 @@ struct ServerOptions {
     /// the official NodeSets that it needs; iiwa, edo, universal_robots add the instances of a
     /// robot, wsg50 those of a gripper.
     std::vector<std::string> nodesets;
+    /// NodeSet2.xml files, in any order. Their required models are taken from each other and from
+    /// the compiled NodeSets, which are added where a file needs them.
+    std::vector<std::filesystem::path> nodeset_files{};
     /// URIs of further namespaces, in the order of their indices.
     std::vector<std::string> namespaces;
     /// Time at which notifications of events are sent.
@@ -180,10 +184,11 @@ using ResultOf = typename AsResult<std::invoke_result_t<Work&>>::Type;
 /// which thread may call it.
 class Server {
 public:
-    /// Makes the server and loads its NodeSets; nothing is open yet.
+    /// Makes the server and loads its NodeSets, which waits for the disk; nothing is open yet.
     /// Errors: invalid_argument (an address that is not loopback, a limit of zero, a certificate
-    ///         for another ApplicationUri), resource_unavailable (the trust folder), not_found
-    ///         (NodeSet), internal (the stack).
+    ///         for another ApplicationUri; with a line "file:line: why" for each mistake in a
+    ///         NodeSet file), resource_unavailable (the trust folder), not_found (NodeSet), internal
+    ///         (the stack).
     static Result<std::unique_ptr<Server>> create(ServerOptions options);
     /// Stops it.
     ~Server();

@@ -15,11 +15,14 @@ inline const NodeId kString{0, 12U};
 inline const NodeId kNodeId{0, 17U};
 inline const NodeId kStatusCode{0, 19U};
 inline const NodeId kLocalizedText{0, 21U};
+inline const NodeId kStructure{0, 22U};
 inline const NodeId kBaseDataType{0, 24U};
+inline const NodeId kEnumeration{0, 29U};
 
 // Types of references.
 inline const NodeId kOrganizes{0, 35U};
 inline const NodeId kHasEventSource{0, 36U};
+inline const NodeId kHasEncoding{0, 38U};
 inline const NodeId kHasTypeDefinition{0, 40U};
 inline const NodeId kHasSubtype{0, 45U};
 inline const NodeId kHasProperty{0, 46U};
