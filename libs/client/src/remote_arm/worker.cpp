@@ -191,10 +191,12 @@ void RemoteArmWorker::observe() {
     const auto seen = session_->observed();
     observeStream(seen);
     observeArm(seen);
+    if (!seen.broken.empty()) {  // before the news of it
+        noteAbsence(Absence{std::chrono::steady_clock::now()});
+    }
     enter(judge(seen));
     if (!seen.broken.empty()) {
         stream_ = Stream::none;
-        noteAbsence(Absence{std::chrono::steady_clock::now()});
         letGo(EndCause::disconnected);
         session_.reset();
         if (reset_deadline_) {

@@ -201,16 +201,18 @@ bool Connection::reconnect() {
             return false;
         }
     }
+    {  // before a used skill shows that it is there
+        const std::lock_guard lock(mutex_);
+        if (lost_.empty()) {
+            away_since_.reset();
+        }
+    }
     for (const auto& adopt : adoptions) {
         adopt();
     }
     spdlog::warn("{}: connected again", options_.url);  // as loud as the report of the loss
     reported_loss_.clear();
     reported_attempt_.clear();
-    const std::lock_guard lock(mutex_);
-    if (lost_.empty()) {
-        away_since_.reset();
-    }
     return true;
 }
 
