@@ -6,6 +6,7 @@
 #include <future>
 
 #include "metier/client/testing/arm_data.hpp"
+#include "metier/joint_simulator/robot_options.hpp"
 #include "metier/opcua_skill/live_figures.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/robot_skills/arm_skills.hpp"
@@ -19,16 +20,10 @@ motion::RobotModel loadModel() {
     return motion::RobotModel::load(std::filesystem::path(METIER_MODELS) / "ur5.toml").value();
 }
 
+/// With the reserve of a drive: a stream whose set-points are late is braked with it.
 joint_simulator::JointSimulatorOptions simulatorOptions(const motion::RobotModel& model) {
-    joint_simulator::JointSimulatorOptions options;
+    auto options = joint_simulator::optionsFor(model);
     options.name = "ur5";
-    for (const auto& joint : model.chain().joints) {
-        const auto& limits = joint.limits;
-        options.axis_names.push_back(joint.name);
-        options.limits.push_back(
-            {limits.lower, limits.upper, limits.velocity, limits.acceleration});
-    }
-    options.start_position.assign(model.home().begin(), model.home().end());
     options.cycle = 8ms;
     return options;
 }
@@ -62,7 +57,10 @@ ServedArm::ServedArm(std::uint16_t port, double fastest) : model_(loadModel()) {
     server_ = opcua::Server::create(options).value();
     skills_ = opcua_skill::SkillServer::create(*server_, clock_).value();
     const auto system = opcua_skill::findMotionDeviceSystem(server_->nodes()).value();
-    auto skills = robot_skills::makeArmSkills({*arm_}, model_, clock_).value();
+    // The machine may hold a thread up for long.
+    auto skills = robot_skills::makeArmSkills({*arm_}, model_, clock_,
+                                              {.longest_silence = 1.5, .largest_lag = 1.5})
+                      .value();
     const auto node = server_->nodes().browse(system.skills).value().front().target;
     program_ = skills_->bind(node, std::move(skills.position_stream)).value();
     program_->attach(*this);
@@ -92,7 +90,7 @@ std::shared_ptr<void> ServedArm::keepBusy() {
     const auto begun = std::make_shared<std::promise<void>>();
     server_->post([begun, ended = std::make_shared<std::future<void>>(ends->get_future())] {
         begun->set_value();
-        ended->wait_for(10s);
+        ended->wait_for(30s);
     });
     begun->get_future().wait();
     return {nullptr, [ends](void*) { ends->set_value(); }};
@@ -108,7 +106,7 @@ void ServedArm::onTransition(const skill::TransitionEvent& event) {
 
 bool ServedArm::awaitRunning(bool wanted) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, 10s, [&] { return running_ == wanted; });
+    return changed_.wait_for(lock, 30s, [&] { return running_ == wanted; });
 }
 
 }  // namespace metier::client

@@ -34,11 +34,11 @@ public:
     /// The skill is halted when the arm is stopped, also while it does not run.
     void watchDevice();
 
-    /// Waits until the stream runs, or has ended; false after 10 s.
+    /// Waits until the stream runs, or has ended; false after 30 s.
     bool awaitStreamStart() { return awaitRunning(true); }
     bool awaitStreamEnd() { return awaitRunning(false); }
 
-    /// Blocks the server's thread until the result is destroyed, at most 10 s.
+    /// Blocks the server's thread until the result is destroyed, at most 30 s.
     std::shared_ptr<void> keepBusy();
 
 private:

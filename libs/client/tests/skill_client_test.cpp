@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 SteadyTime soon() {
-    return std::chrono::steady_clock::now() + 5s;
+    return std::chrono::steady_clock::now() + 30s;
 }
 
 skill::SkillDescription jointMove() {
