@@ -34,8 +34,10 @@ protected:
         };
         program_ = &bench_.addSkill(system_tests::benchDescription("MoveSkill"), functions);
         bench_.serve();
-        connection_.emplace(RemoteServerOptions{.url = bench_.url(), .name = "other"},
-                            std::shared_ptr(system_tests::connectAs(bench_.url(), "component")));
+        connection_.emplace(
+            RemoteServerOptions{
+                .url = bench_.url(), .name = "other", .session_timeout = std::chrono::minutes(1)},
+            std::shared_ptr(system_tests::connectAs(bench_.url(), "component")));
         link_ = std::make_shared<UsedSkillLink>(executor_);
         used_.emplace(*connection_, link_, "MoveSkill of other", "here.Test");
         const auto address = client::findSkill(connection_->client(), "MoveSkill").value();
@@ -55,7 +57,9 @@ protected:
         limits.event_queue = 3;
         return limits;
     }
-    bool until(const std::function<bool()>& done) { return executor_->runUntil(done); }
+    bool until(const std::function<bool()>& done) {
+        return executor_->runUntil(done, std::chrono::seconds(30));
+    }
 
     skill::ExecutionHandle execution_;  // used on the server's thread
     system_tests::BenchServer bench_{{.limits = shortQueues()}};

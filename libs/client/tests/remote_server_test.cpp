@@ -47,7 +47,9 @@ class RemoteUsedSkillTest : public opcua_skill::testing::ServedSkills {
 protected:
     RemoteUsedSkillTest() : move_(add(description())) {
         serve();
-        remote_ = RemoteServer::connect({.url = server().endpointUrl(), .name = "other"}, executor_)
+        remote_ = RemoteServer::connect(
+                      {.url = server().endpointUrl(), .name = "other", .session_timeout = 1min},
+                      executor_)
                       .value();
         used_ = use("here.Test");
     }
@@ -73,7 +75,7 @@ protected:
         ASSERT_TRUE(move_.hand->await("start"));
         ASSERT_TRUE(until([this] { return used_->state() == State::running; }));
     }
-    bool until(const std::function<bool()>& done) { return executor_->runUntil(done); }
+    bool until(const std::function<bool()>& done) { return executor_->runUntil(done, 30s); }
 
     std::shared_ptr<skill::testing::ManualExecutor> executor_ =
         std::make_shared<skill::testing::ManualExecutor>();
@@ -376,7 +378,7 @@ public:
     /// Waits until `text` was logged that often, at any level.
     bool await(const std::string& text, int count) {
         std::unique_lock lock(reported_mutex_);
-        return changed_.wait_for(lock, 10s,
+        return changed_.wait_for(lock, 30s,
                                  [&] { return countOf(text, spdlog::level::trace) >= count; });
     }
     int warnings(const std::string& text) {
@@ -414,10 +416,12 @@ protected:
         logger->set_level(spdlog::level::trace);
         spdlog::set_default_logger(std::move(logger));
         used_.reset();
-        remote_ =
-            RemoteServer::connect(
-                {.url = server().endpointUrl(), .name = "other", .retry_interval = 10ms}, executor_)
-                .value();
+        remote_ = RemoteServer::connect({.url = server().endpointUrl(),
+                                         .name = "other",
+                                         .session_timeout = 1min,
+                                         .retry_interval = 10ms},
+                                        executor_)
+                      .value();
         used_ = use("here.Test");
     }
     ~LoggedRemoteUsedSkill() override {
@@ -438,7 +442,10 @@ TEST_F(LoggedRemoteUsedSkill, TellsOnceThatItsServerIsAway) {
 }
 
 TEST_F(LoggedRemoteUsedSkill, TellsALossOnceThatIsHeardOfInTwoWays) {
-    Connection connection({.url = server().endpointUrl(), .name = "other", .retry_interval = 10ms},
+    Connection connection({.url = server().endpointUrl(),
+                           .name = "other",
+                           .session_timeout = 1min,
+                           .retry_interval = 10ms},
                           connect("component"));
     used_.reset();
     remote_.reset();
@@ -453,7 +460,8 @@ TEST_F(LoggedRemoteUsedSkill, TellsALossOnceThatIsHeardOfInTwoWays) {
 class DeafUsedSkill : public RemoteUsedSkillTest {
 protected:
     DeafUsedSkill()
-        : connection_({.url = server().endpointUrl(), .name = "other"}, connect("deaf")) {
+        : connection_({.url = server().endpointUrl(), .name = "other", .session_timeout = 1min},
+                      connect("deaf")) {
         link_ = std::make_shared<UsedSkillLink>(executor_);
         deaf_.emplace(connection_, link_, "JointPtpMoveSkill of other", "here.Test");
         auto opened =
@@ -574,7 +582,8 @@ TEST_F(DeafUsedSkill, TellsAResetThatIsUnderWayWhenItsServerIsLost) {
 }
 
 TEST_F(RemoteUsedSkillTest, IsLostWithItsEventsAndComesBackByItself) {
-    Connection connection({.url = server().endpointUrl(), .name = "other"}, connect("component"));
+    Connection connection({.url = server().endpointUrl(), .name = "other", .session_timeout = 1min},
+                          connect("component"));
     const auto link = std::make_shared<UsedSkillLink>(executor_);
     RemoteUsedSkill used(connection, link, "JointPtpMoveSkill of other", "here.Test");
     const auto opened = connection.open(remote_->skills().value().front(), link).value();
