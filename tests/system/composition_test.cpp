@@ -208,7 +208,7 @@ TEST_F(ComposedArm, ShowsWhatItIsMadeOfAndWhereItIs) {
     auto& client = wave_->client();
     const auto metier = client.namespaceIndex("urn:metier:skills").value();
     const auto& node = (*wave_)->address().node;
-    EXPECT_EQ((*wave_)->address().type_name, "SequenceSkillType");
+    EXPECT_EQ((*wave_)->address().type_name, "WaveSkillType");
     const auto uses = client.browse({.node = node, .reference_type = {metier, 20306U}}).value();
     ASSERT_EQ(uses.size(), 1U);
     EXPECT_EQ(uses.front().browse_name.name, "ThereAndBackSkill");

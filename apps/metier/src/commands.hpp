@@ -60,6 +60,7 @@ void addIk(CLI::App& app, CommandContext& context);
 void addCheck(CLI::App& app, CommandContext& context);
 void addPlot(CLI::App& app, CommandContext& context);
 void addGraph(CLI::App& app, CommandContext& context);
+void addTypes(CLI::App& app, CommandContext& context);
 void addSkillCommands(CLI::App& app, CommandContext& context);
 void addOwn(CLI::App& app, CommandContext& context);
 void addAudit(CLI::App& app, CommandContext& context);

@@ -33,8 +33,8 @@ void addCommands(CLI::App& app, metier::app::CommandContext& context) {
                            addOwn,       addAudit, addHistory,   addReplay,
                            addTrace,     addFind,  addDiscovery, addSquare,
                            addPickPlace, addFk,    addIk,        addCheck,
-                           addPlot,      addGraph, addDashboard, addVirtual,
-                           addTrust,     addUser,  addCompletion}) {
+                           addPlot,      addGraph, addTypes,     addDashboard,
+                           addVirtual,   addTrust, addUser,      addCompletion}) {
         add(app, context);
     }
 }

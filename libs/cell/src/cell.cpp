@@ -139,6 +139,9 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     if (table.has("nodesets")) {
         server.nodesets = readFiles(table, "nodesets", folder);
     }
+    if (table.has("types")) {
+        server.types = readFiles(table, "types", folder);
+    }
     server.discovery = readDiscovery(table, of_cell.discovery);
     server.records = of_cell.records;
     server.metrics = readMetrics(table);

@@ -103,24 +103,6 @@ void readDefault(const TomlTable& table, Field& field) {
     field.default_value = std::move(*value);
 }
 
-Field readField(const TomlTable& table, const std::string& name) {
-    Field field{.name = name, .description = table.textOr("description", "")};
-    field.type = choose(table, "type", table.text("type"), kTypes,
-                        [](ValueType type) { return skill::toString(type); });
-    field.unit = choose(table, "unit", table.textOr("unit", ""), skill::kUnits,
-                        [](const Unit& unit) { return unit.symbol; });
-    readRange(table, field);
-    readLength(table, field);
-    return field;
-}
-
-Declaration readParameter(const TomlTable& table, const std::string& name) {
-    Declaration parameter{.line = table.line(), .field = readField(table, name), .from = {}};
-    parameter.field.optional = table.flagOr("optional", false);
-    readDefault(table, parameter.field);
-    return parameter;
-}
-
 Declaration readResult(const TomlTable& table, const std::string& name) {
     Declaration result{.line = table.line(), .field = readField(table, name), .from = {}};
     result.field.place = skill::Place::final_result;
@@ -195,6 +177,32 @@ Result<Definition> checkedDefinition(Result<TomlFile> file, std::string name) {
 
 }  // namespace
 
+Field readField(const TomlTable& table, const std::string& name) {
+    Field field{.name = name, .description = table.textOr("description", "")};
+    field.type = choose(table, "type", table.text("type"), kTypes,
+                        [](ValueType type) { return skill::toString(type); });
+    field.unit = choose(table, "unit", table.textOr("unit", ""), skill::kUnits,
+                        [](const Unit& unit) { return unit.symbol; });
+    readRange(table, field);
+    readLength(table, field);
+    return field;
+}
+
+Declaration readParameter(const TomlTable& table, const std::string& name) {
+    Declaration parameter{.line = table.line(), .field = readField(table, name), .from = {}};
+    parameter.field.optional = table.flagOr("optional", false);
+    readDefault(table, parameter.field);
+    return parameter;
+}
+
+std::string readNamespace(const TomlTable& table, std::string preset) {
+    auto uri = table.textOr("namespace", std::move(preset));
+    if (uri.find(':') == std::string::npos || uri.find_first_of(" \t\n") != std::string::npos) {
+        table.reject("namespace", fmt::format("\"{}\" is no URI, such as urn:example:line", uri));
+    }
+    return uri;
+}
+
 bool checkName(const TomlTable& table, std::string_view key, const std::string& name,
                std::size_t longest) {
     const auto letter = [](char c) {
@@ -218,6 +226,11 @@ Definition readDefinition(const TomlFile& file, std::string name) {
     checkName(root, "name", definition.name, kLongestName);
     definition.type = root.textOr("type", definition.name + "Type");
     checkName(root, "type", definition.type, kLongestName);
+    definition.type_namespace = readNamespace(root, "urn:metier:composition:" + definition.type);
+    definition.base = root.textOr("base", definition.base);
+    if (root.has("terms")) {
+        definition.terms = root.texts("terms");
+    }
     definition.description = root.textOr("description", "");
     definition.rest_time = readRestTime(root);
     definition.on_owner_loss = readOwnerLoss(root);

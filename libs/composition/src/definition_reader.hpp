@@ -4,6 +4,7 @@
 
 #include "metier/cell/toml_file.hpp"
 #include "metier/composition/definition.hpp"
+#include "metier/skill/field.hpp"
 
 namespace metier::composition {
 
@@ -22,6 +23,14 @@ Reference readReference(const cell::TomlTable& table, std::string_view key,
 Binding readBinding(const cell::TomlValue& value, std::string key);
 
 Condition readCondition(const cell::TomlTable& table, std::string key);
+
+/// The keys of a parameter or result: type, unit, range, length, description.
+skill::Field readField(const cell::TomlTable& table, const std::string& name);
+/// The same, with default and optional.
+Declaration readParameter(const cell::TomlTable& table, const std::string& name);
+
+/// The URI of a namespace, and what may be left out; notes a text that is none.
+std::string readNamespace(const cell::TomlTable& table, std::string preset);
 
 /// Whether it can be the name of a skill, a parameter, a step; notes it if not.
 bool checkName(const cell::TomlTable& table, std::string_view key, const std::string& name,

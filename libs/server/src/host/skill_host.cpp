@@ -10,9 +10,11 @@
 
 #include "host/port_lock.hpp"
 #include "host/server_limits.hpp"
+#include "metier/composition/skill_type_file.hpp"
 #include "metier/opcua_skill/base_placement.hpp"
 #include "metier/opcua_skill/live_figures.hpp"
 #include "metier/opcua_skill/skill_dictionary.hpp"
+#include "metier/opcua_skill/skill_types.hpp"
 #include "metier/server/kinematics_conversion.hpp"
 
 namespace metier::server {
@@ -53,6 +55,10 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const cell::ServerConfig& c
                    ? Result<void>()
                    : host->records_->follow(*host->server_, host->skills_->executor()));
     METIER_TRY(opcua_skill::publishDictionary(host->nodes()));
+    for (const auto& file : config.types) {
+        METIER_TRY(composition::loadSkillTypes(file).and_then(
+            [&](const auto& types) { return opcua_skill::declareTypes(host->nodes(), types); }));
+    }
     host->control_ = std::make_shared<skill::Control>(host->skills_->executor(), host->clock_);
     host->names_ = std::move(names);
     if (host->names_ == nullptr) {

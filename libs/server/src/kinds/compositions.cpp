@@ -13,6 +13,8 @@
 #include "metier/composition/composition.hpp"
 #include "metier/composition/definition_file.hpp"
 #include "metier/composition/local_used_skill.hpp"
+#include "metier/composition/skill_type_file.hpp"
+#include "metier/opcua_skill/skill_types.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 
 namespace metier::server {
@@ -119,6 +121,26 @@ Result<std::vector<composition::Definition>> loadDefinitions(
     return composition::inOrderOfUse(std::move(definitions));
 }
 
+namespace {
+
+/// A type that no model has is that of the composition; terms belong to it.
+Result<void> declareOwnType(SkillHost& host, const Definition& definition,
+                            const skill::SkillDescription& description) {
+    if (!opcua_skill::hasSkillType(host.nodes(), definition.type)) {
+        return opcua_skill::declareTypes(host.nodes(),
+                                         composition::skillTypesOf(definition, description));
+    }
+    if (!definition.terms.empty()) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: terms belong to a type of its own, and the server has a type "
+                                "{}",
+                                definition.file, definition.type));
+    }
+    return {};
+}
+
+}  // namespace
+
 std::string newLife() {
     constexpr std::size_t kDigits = 6;
     return randomHex(kDigits);
@@ -140,6 +162,7 @@ Result<composition::SequenceSkill*> publishSequence(SkillHost& host, const opcua
         descriptions.emplace(alias, used->description());
     }
     METIER_ASSIGN(auto composed, composition::compose(sequence.definition, descriptions));
+    METIER_TRY(declareOwnType(host, sequence.definition, composed.description));
     auto made = std::make_unique<composition::SequenceSkill>(
         std::move(composed), std::move(sequence.used_skills), host.skills().executor(),
         host.clock(), std::move(sequence.origin));

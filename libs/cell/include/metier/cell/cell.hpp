@@ -167,6 +167,8 @@ struct ServerConfig {
     std::vector<Limit> limits;
     /// NodeSet2.xml files with nodes that the server shows besides its own; absolute paths.
     std::vector<std::filesystem::path> nodesets;
+    /// Files of skill types that the server declares; absolute paths.
+    std::vector<std::filesystem::path> types;
     /// Ways in which it is found, and finds others.
     Discovery discovery;
     /// Place of its records, the same for all servers of a cell.

@@ -194,6 +194,13 @@ struct Definition {
     /// BrowseNames of the composed skill and of its type, at most 80 bytes.
     std::string name{};
     std::string type{};
+    /// Namespace of the type, if no model has it: "urn:metier:composition:TYPE" unless the file says
+    /// otherwise.
+    std::string type_namespace{};
+    /// BrowseName of the type above it.
+    std::string base = "SequenceSkillType";
+    /// Tasks of the skill: terms of metier's dictionary, such as "grasp", or URIs; of its type.
+    std::vector<std::string> terms{};
     /// One line for a person.
     std::string description{};
     /// Values that a client may give.
