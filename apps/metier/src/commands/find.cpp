@@ -10,6 +10,7 @@
 #include "metier/opcua/search.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/server/candidate.hpp"
+#include "metier/server/property_wish.hpp"
 #include "metier/server/skill_survey.hpp"
 #include "printable.hpp"
 
@@ -22,6 +23,8 @@ constexpr const char* kLocalDiscovery = "opc.tcp://127.0.0.1:4840";
 struct FindOptions {
     std::string task;  // a type or a term
     server::ArmFigures wishes;
+    std::vector<std::string> properties;
+    std::vector<server::PropertyWish> property_wishes;
     std::vector<std::string> at;
     std::vector<std::string> discovery;
     bool json = false;
@@ -146,7 +149,11 @@ private:
         const auto& server = servers_[index].server;
         const auto& skill = (*servers_[index].skills)[skill_index];
         const auto figures = server::figuresOf(servers_, index, skill_index);
-        const auto verdict = server::judge(options_.wishes, figures);
+        auto verdict = server::judge(options_.wishes, figures);
+        auto of_properties = server::judgeProperties(options_.property_wishes, skill);
+        verdict.fits = verdict.fits && of_properties.fits;
+        verdict.reasons.insert(verdict.reasons.end(), of_properties.reasons.begin(),
+                               of_properties.reasons.end());
         const auto reasons = reasonsOf(skill, term, verdict);
         fitting_ += verdict.fits ? 1 : 0;
         say(server, fmt::format("{} {}: {}", nameOf(skill), verdict.fits ? "fits" : "does not fit",
@@ -176,7 +183,11 @@ private:
     nlohmann::json problems_ = nlohmann::json::array();
 };
 
-Exit runFind(const FindOptions& options, const CommandIdentity& identity) {
+Result<Exit> runFind(FindOptions& options, const CommandIdentity& identity) {
+    for (const auto& property : options.properties) {
+        METIER_ASSIGN(auto wish, asUsage(server::parsePropertyWish(property)));
+        options.property_wishes.push_back(std::move(wish));
+    }
     const auto sighting = searchFor(options);
     const auto servers = server::survey(sighting.servers, identity);
     Findings findings(options, servers);
@@ -203,12 +214,16 @@ void addFind(CLI::App& app, CommandContext& context) {
         ->check(CLI::PositiveNumber);
     command->add_option("--payload", options->wishes.payload, "Least payload of the arm [kg]")
         ->check(CLI::PositiveNumber);
+    command->add_option("--property", options->properties,
+                        "Property of the skill's type: NAME, NAME=VALUE, NAME>=NUMBER or "
+                        "NAME<=NUMBER, in the property's own unit");
     command->add_option("--at", options->at, "Ask these servers: opc.tcp://host:port");
     command->add_option("--discovery", options->discovery,
                         "Ask these discovery servers who there is. Without this and --at: the "
                         "one of this machine, opc.tcp://127.0.0.1:4840, and mDNS");
     command->add_flag("--json", options->json, "Print JSON");
-    command->callback([options, &context] { context.exit = runFind(*options, context.identity); });
+    command->callback(
+        [options, &context] { context.exit = exitOf(runFind(*options, context.identity)); });
 }
 
 }  // namespace metier::app

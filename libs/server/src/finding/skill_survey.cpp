@@ -26,6 +26,52 @@ opcua::ClientOptions optionsFor(std::chrono::milliseconds limit) {
     return options;
 }
 
+/// A value that a property of a type may have; nothing for others.
+std::optional<std::variant<bool, double, std::string>> factIn(const opcua::Value& value) {
+    if (const auto truth = value.as<bool>()) {
+        return *truth;
+    }
+    if (const auto number = value.as<double>()) {
+        return *number;
+    }
+    if (const auto text = value.as<std::string>()) {
+        return opcua::sanitise(*text);
+    }
+    return std::nullopt;
+}
+
+/// Symbol of the unit of a Variable; empty if it has none.
+opcua::Answer<std::string> unitOf(opcua::Client& client, const opcua::NodeId& variable) {
+    const auto found = client.translate(variable, {{0, "EngineeringUnits"}});
+    if (!found) {
+        return std::string();
+    }
+    METIER_ASSIGN(const auto read, client.read(*found));
+    const auto unit = read.as<opcua::EuInformation>();
+    return unit ? opcua::sanitise(unit->display_name.text) : std::string();
+}
+
+/// Adds the Variables right below a type that have a plain value.
+opcua::Answer<> addFacts(opcua::Client& client, const opcua::NodeId& type,
+                         std::vector<TypeFact>& facts) {
+    METIER_ASSIGN(const auto children,
+                  client.browse({.node = type, .node_classes = {opcua::NodeClass::variable}}));
+    for (const auto& child : children) {
+        const auto& name = child.browse_name.name;
+        const bool known = std::any_of(facts.begin(), facts.end(),
+                                       [&](const TypeFact& fact) { return fact.name == name; });
+        const auto read =
+            known ? opcua::Answer<opcua::Value>(opcua::Value()) : client.read(child.target);
+        // What has no value at the type is no fact of the type.
+        const auto value = read ? factIn(*read) : std::nullopt;
+        if (value) {
+            METIER_ASSIGN(auto unit, unitOf(client, child.target));
+            facts.push_back({opcua::sanitise(name), *value, std::move(unit)});
+        }
+    }
+    return {};
+}
+
 /// Questions about the skills of one server; about types and arms once each.
 class Questions {
 public:
@@ -37,7 +83,7 @@ public:
         METIER_ASSIGN(const auto type_terms,
                       own ? typeTermsOf(address) : tl::unexpected(own.error()));
         SurveyedSkill skill{std::move(address), type_terms->types, std::move(own->terms),
-                            std::move(own->uses)};
+                            type_terms->facts, std::move(own->uses)};
         append(skill.terms, type_terms->terms);
         if (const auto* controller = skill.address.controller()) {
             const auto [arm, is_new] = arms_.try_emplace(controller->node);
@@ -54,6 +100,7 @@ private:
     struct TypeTerms {
         std::vector<std::string> types;
         std::vector<std::string> terms;
+        std::vector<TypeFact> facts;
     };
 
     static void append(std::vector<std::string>& terms, const std::vector<std::string>& more) {
@@ -68,10 +115,16 @@ private:
             return &type_terms->second;
         }
         METIER_ASSIGN(const auto types, client::typeChain(client_, address));
+        bool below_skill_type = std::any_of(
+            types.begin(), types.end(), [](const auto& type) { return type.name == "SkillType"; });
         for (const auto& type : types) {
+            below_skill_type = below_skill_type && type.name != "SkillType";
             METIER_ASSIGN(const auto references, references_.read(type.node));
             type_terms->second.types.push_back(type.name);
             append(type_terms->second.terms, references.terms);
+            if (below_skill_type) {
+                METIER_TRY(addFacts(client_, type.node, type_terms->second.facts));
+            }
         }
         return &type_terms->second;
     }

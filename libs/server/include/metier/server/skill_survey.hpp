@@ -3,6 +3,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "metier/base/error.hpp"
@@ -21,6 +22,16 @@ struct ArmFigures {
     std::optional<double> payload{};
 };
 
+/// A property of a skill type, such as its control frequency.
+struct TypeFact {
+    /// BrowseName.
+    std::string name;
+    /// Value, a number in `unit`.
+    std::variant<bool, double, std::string> value;
+    /// Symbol of the unit; empty: none.
+    std::string unit;
+};
+
 /// A skill as published in its server's address space.
 struct SurveyedSkill {
     /// Place in its server.
@@ -29,6 +40,8 @@ struct SurveyedSkill {
     std::vector<std::string> types;
     /// Purposes: identifiers of dictionary entries, its own, then those of its types.
     std::vector<std::string> terms{};
+    /// Properties of its types below SkillType; the nearest first.
+    std::vector<TypeFact> properties{};
     /// Skills that it runs; empty: it runs none, or does not publish them.
     std::vector<client::SkillUse> uses{};
     /// Figures of the arm that it moves itself.
