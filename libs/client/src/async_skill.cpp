@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "device_lock.hpp"
 #include "method_values.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/values.hpp"
@@ -25,6 +26,8 @@ struct AsyncSkill::Impl {
     std::shared_ptr<TransitionLog> log = std::make_shared<TransitionLog>();
     std::vector<opcua::Subscription> subscriptions{};
     opcua::Subscription stopping{};
+    // Shared with the answers that are on their way.
+    std::shared_ptr<LockUse> lock_use{};
 
     Answer<> startByWrites(const skill::StartRequest& request, Done<std::string> done) const;
     Answer<> look(const std::string& id, Done<skill::ExecutionRecord> done) const;
@@ -85,6 +88,27 @@ Answer<> callStart(opcua::Client& client, const NamelessStart& start,
                             });
 }
 
+/// Writes the parameters, then calls Start.
+Answer<> writeAndStart(opcua::Client& client, std::vector<opcua::WriteItem> writes,
+                       NamelessStart start, const std::shared_ptr<TransitionLog>& log,
+                       AsyncSkill::Done<std::string> done) {
+    if (writes.empty()) {
+        return callStart(client, start, log, std::move(done));
+    }
+    return client.writeManyAsync(
+        std::move(writes), [&client, start = std::move(start), log, done = std::move(done)](
+                               const Answer<std::vector<opcua::StatusCode>>& statuses) {
+            auto begun =
+                statuses ? written(*statuses, start) : Answer<>(tl::unexpected(statuses.error()));
+            if (begun) {
+                begun = callStart(client, start, log, done);
+            }
+            if (!begun) {
+                done(tl::unexpected(begun.error()));
+            }
+        });
+}
+
 /// Record of the execution that was started last, as far as state and results show it.
 Answer<skill::ExecutionRecord> recordFrom(const std::vector<opcua::DataValue>& values,
                                           const SkillNodes& nodes, const std::string& id) {
@@ -114,7 +138,12 @@ Answer<skill::ExecutionRecord> recordFrom(const std::vector<opcua::DataValue>& v
 
 }  // namespace
 
-Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address, Watch watch) {
+std::shared_ptr<DeviceLocks> makeDeviceLocks(opcua::Client& client) {
+    return std::make_shared<DeviceLocks>(client);
+}
+
+Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address, Watch watch,
+                                    std::shared_ptr<DeviceLocks> locks) {
     METIER_ASSIGN(auto nodes, readSkillNodes(client, address));
     auto impl = std::make_unique<Impl>(Impl{client, std::move(address), std::move(nodes)});
     impl->description = {.name = impl->address.name,
@@ -122,6 +151,8 @@ Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address,
                          .parameters = allOptional(fieldsOf(impl->nodes.parameters)),
                          .results = allOptional(fieldsOf(impl->nodes.results)),
                          .suspendable = impl->nodes.suspendable};
+    impl->lock_use = std::make_shared<LockUse>(
+        locks ? std::move(locks) : std::make_shared<DeviceLocks>(client), impl->nodes.lock);
     if (auto stopping = watchStopping(client, impl->address.node, std::move(watch.on_stopping))) {
         impl->stopping = std::move(*stopping);
     } else if (stopping.error().code == Errc::connection_lost) {
@@ -153,6 +184,18 @@ const skill::SkillDescription& AsyncSkill::description() const noexcept {
 
 bool AsyncSkill::knowsExecutions() const noexcept {
     return impl_->nodes.knowsExecutions();
+}
+
+bool AsyncSkill::locksDevice() const noexcept {
+    return impl_->nodes.lock.isThere();
+}
+
+std::vector<Lack> AsyncSkill::lacks() const {
+    return impl_->nodes.lacks();
+}
+
+void AsyncSkill::unlock() const {
+    impl_->lock_use->giveBack([](const auto& /*any*/) {});
 }
 
 Answer<AsyncSkill::Now> AsyncSkill::now() const {
@@ -204,22 +247,25 @@ Answer<> AsyncSkill::Impl::startByWrites(const skill::StartRequest& request,
         writes.push_back({found->node, opcua_skill::toOpcua(value)});
         start.names.push_back(name);
     }
-    if (writes.empty()) {
-        return callStart(client, start, log, std::move(done));
+    if (!nodes.lock.isThere()) {
+        return writeAndStart(client, std::move(writes), std::move(start), log, std::move(done));
     }
-    return client.writeManyAsync(
-        std::move(writes),
-        [&client = client, start = std::move(start), log = log,
-         done = std::move(done)](const Answer<std::vector<opcua::StatusCode>>& statuses) {
-            auto begun =
-                statuses ? written(*statuses, start) : Answer<>(tl::unexpected(statuses.error()));
-            if (begun) {
-                begun = callStart(client, start, log, done);
-            }
-            if (!begun) {
-                done(tl::unexpected(begun.error()));
-            }
-        });
+    // An execution that did not begin needs no lock.
+    auto begun = [lock = lock_use, done = std::move(done)](const Answer<std::string>& id) {
+        if (!id) {
+            lock->giveBack([](const auto& /*any*/) {});
+        }
+        done(id);
+    };
+    lock_use->take([&client = client, writes = std::move(writes), start = std::move(start),
+                    log = log, begun = std::move(begun)](const Answer<>& locked) {
+        const auto sent =
+            locked ? writeAndStart(client, writes, start, log, begun) : Answer<>(locked);
+        if (!sent) {
+            begun(tl::unexpected(sent.error()));
+        }
+    });
+    return {};
 }
 
 Answer<> AsyncSkill::call(skill::Method method, Done<> done) const {

@@ -44,6 +44,7 @@ Answer<> SkillHandle::Impl::readNodes() {
     nodes = std::move(read);
     parameters = fieldsOf(nodes.parameters);
     results = fieldsOf(nodes.results);
+    lock_use = std::make_shared<LockUse>(std::make_shared<DeviceLocks>(client), nodes.lock);
     return {};
 }
 
@@ -143,6 +144,14 @@ bool SkillHandle::knowsExecutions() const noexcept {
     return impl_->nodes.knowsExecutions();
 }
 
+bool SkillHandle::locksDevice() const noexcept {
+    return impl_->nodes.lock.isThere();
+}
+
+std::vector<Lack> SkillHandle::lacks() const {
+    return impl_->nodes.lacks();
+}
+
 bool SkillHandle::takesParents() const noexcept {
     return knowsExecutions() && !impl_->nodes.records.isNull();
 }
@@ -223,11 +232,31 @@ Answer<std::string> SkillHandle::Impl::startByWrites(SkillHandle& handle,
                         address.name),
             opcua::status::kBadMethodInvalid));
     }
-    for (const auto& [name, value] : request.parameters) {
-        METIER_TRY(handle.set(name, value));
+    METIER_TRY(lock());
+    auto begun = [&]() -> Answer<> {
+        for (const auto& [name, value] : request.parameters) {
+            METIER_TRY(handle.set(name, value));
+        }
+        return handle.start();
+    }();
+    if (!begun) {
+        unlock();
+        return tl::unexpected(std::move(begun.error()));
     }
-    METIER_TRY(handle.start());
     return request.execution_id.empty() ? newExecutionId() : request.execution_id;
+}
+
+Answer<> SkillHandle::Impl::lock() const {
+    auto taken = awaitDone([this](LockUse::Done done) { lock_use->take(std::move(done)); });
+    if (!taken) {
+        taken.error().message =
+            fmt::format("{} was not started: {}", address.name, taken.error().message);
+    }
+    return taken;
+}
+
+void SkillHandle::Impl::unlock() const {
+    static_cast<void>(awaitDone([this](const LockUse::Done& done) { lock_use->giveBack(done); }));
 }
 
 Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {

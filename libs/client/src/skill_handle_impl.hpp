@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "device_lock.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "skill_nodes.hpp"
 #include "transition_log.hpp"
@@ -38,6 +39,8 @@ struct SkillHandle::Impl {
     std::vector<opcua::Subscription> subscriptions{};
     // Execution that this handle started or resumed last, until awaitEnd() has returned its end.
     std::optional<AwaitedExecution> own{};
+    // Shared with the answers that are on their way.
+    std::shared_ptr<LockUse> lock_use{};
 
     /// Reads what the skill is like.
     opcua::Answer<> readNodes();
@@ -68,6 +71,11 @@ struct SkillHandle::Impl {
     opcua::Answer<std::string> startByWrites(SkillHandle& handle,
                                              const skill::StartRequest& request);
     opcua::Answer<ProgramNow> look() const;
+    /// Takes the lock of the skill's device for one run; waits. Nothing to do without one.
+    /// Errors: locked, with the name of the client that holds it; those of the server.
+    opcua::Answer<> lock() const;
+    /// Gives it back; waits for the answer, and no run depends on it.
+    void unlock() const;
 
     /// Asks to start or resume, which awaitEnd() is then about.
     template <typename Ask>

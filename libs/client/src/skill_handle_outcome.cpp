@@ -309,6 +309,7 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
         auto end = impl_->awaitNamelessEnd(awaited, deadline);
         if (end || end.error().code == Errc::execution_lost) {
             impl_->own.reset();
+            impl_->unlock();
         }
         return end;
     }
@@ -344,8 +345,8 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
 
 /// Parameters of a Start that was refused do not count for the next one.
 void SkillHandle::takeBack(const skill::ValueMap& parameters, const Failure& refusal) {
-    if (refusal.delivery != Delivery::answered || !knowsExecutions()) {
-        return;  // it may run, or the server knows no default
+    if (refusal.delivery != Delivery::answered) {
+        return;  // it may run
     }
     for (const auto& [name, value] : parameters) {
         static_cast<void>(set(name, {}));  // if that fails the session ends, and with it the values
@@ -353,6 +354,10 @@ void SkillHandle::takeBack(const skill::ValueMap& parameters, const Failure& ref
 }
 
 Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& parameters, SteadyTime deadline) {
+    METIER_TRY(impl_->refresh());
+    if (!knowsExecutions()) {
+        return runWith({.parameters = parameters}, deadline);
+    }
     for (const auto& [name, value] : parameters) {
         if (auto written = set(name, value); !written) {
             takeBack(parameters, written.error());
@@ -404,7 +409,9 @@ Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
             return impl_->outcomeOf(*record);
         }
     }
-    return orHalt(impl_->awaitOutcome(awaited, deadline));
+    auto outcome = orHalt(impl_->awaitOutcome(awaited, deadline));
+    impl_->unlock();
+    return outcome;
 }
 
 Answer<skill::ValueMap> SkillHandle::orHalt(Answer<skill::ValueMap> outcome) {

@@ -166,6 +166,29 @@ std::vector<Field> fieldsOf(const std::vector<FieldNode>& nodes) {
     return fields;
 }
 
+std::vector<Lack> SkillNodes::lacks() const {
+    if (knowsExecutions()) {
+        return {};
+    }
+    return lock.isThere() ? std::vector{Lack::dead_man}
+                          : std::vector{Lack::atomic_start, Lack::dead_man};
+}
+
+Answer<std::vector<Lack>> readLacks(Client& client, const SkillAddress& skill) {
+    Questions questions(client);
+    METIER_ASSIGN(const auto children, childrenOf(questions, skill.node));
+    SkillNodes nodes;
+    for (const auto& [name, node] :
+         {std::pair{"StartWith", &nodes.start_with}, {"GetExecution", &nodes.get_execution}}) {
+        const auto* found = findNamed(children, name);
+        *node = found == nullptr ? NodeId() : found->target;
+    }
+    if (!nodes.knowsExecutions()) {
+        METIER_ASSIGN(nodes.lock, findLock(client, skill));
+    }
+    return nodes.lacks();
+}
+
 Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
     Questions questions(client);
     METIER_ASSIGN(const auto children, childrenOf(questions, address.node));
@@ -177,6 +200,9 @@ Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
     }
     const auto& suspend = nodes.methods.at(static_cast<std::size_t>(skill::Method::suspend));
     nodes.suspendable = nodes.suspendable && !suspend.isNull();
+    if (!nodes.knowsExecutions()) {
+        METIER_ASSIGN(nodes.lock, findLock(client, address));
+    }
     struct Folder {
         std::string_view name;
         Place place;

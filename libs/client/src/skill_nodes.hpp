@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "device_lock.hpp"
+#include "metier/client/lack.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/skill/field.hpp"
@@ -33,6 +35,7 @@ struct SkillNodes {
     opcua::NodeId execution_id;
     /// Null if the server keeps no records for clients; then it takes no parent of a start, either.
     opcua::NodeId records;
+    LockNodes lock;  ///< of the skill's device; looked for only if the server names no executions
     bool suspendable = true;
     std::vector<FieldNode> parameters;
     std::vector<FieldNode> results;
@@ -40,6 +43,8 @@ struct SkillNodes {
     /// Whether the server answers for executions by their names. One that does not is not ours:
     /// what it runs is known only by looking at the skill's state.
     bool knowsExecutions() const { return !start_with.isNull() && !get_execution.isNull(); }
+    /// What a run cannot have.
+    std::vector<Lack> lacks() const;
 };
 
 std::vector<skill::Field> fieldsOf(const std::vector<FieldNode>& nodes);

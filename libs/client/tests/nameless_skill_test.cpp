@@ -92,6 +92,11 @@ TEST_F(NamelessSkill, GivenUpWhileSuspendedHasNotFinished) {
 
 TEST_F(NamelessSkill, SaysWhatItLacks) {
     auto lamp = open();
+    const std::vector both{Lack::atomic_start, Lack::dead_man};
+    EXPECT_EQ(lamp.lacks(), both);
+    EXPECT_EQ(readLacks(served_.client(), lamp_).value(), both);
+    EXPECT_EQ(textOf(both), "no atomic start, no dead-man");
+    EXPECT_EQ(explanationOf({Lack::dead_man}), "no dead-man (it goes on if its client dies)");
     const auto halted = lamp.halt();
     ASSERT_FALSE(halted);
     EXPECT_EQ(halted.error().code, Errc::not_supported);

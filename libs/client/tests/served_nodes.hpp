@@ -18,9 +18,11 @@ class ServedNodes {
 public:
     using NodeId = opcua::NodeId;
 
-    /// \param nodesets as ServerOptions; the types of frames and vectors come with them
-    explicit ServedNodes(std::vector<std::string> nodesets = {})
-        : server_(create(std::move(nodesets))) {}
+    /// \param nodesets   as ServerOptions; the types of frames and vectors come with them
+    /// \param namespaces as ServerOptions; without `nodesets` the first one has the index 2
+    explicit ServedNodes(std::vector<std::string> nodesets = {},
+                         std::vector<std::string> namespaces = {})
+        : server_(create(std::move(nodesets), std::move(namespaces))) {}
 
     NodeId object(const NodeId& parent, const std::string& name,
                   const NodeId& type = opcua::ids::kBaseObjectType) {
@@ -55,6 +57,11 @@ public:
     opcua::AddressSpace& nodes() { return server_->nodes(); }
 
     /// Starts the server.
+    std::string url() {
+        static_cast<void>(client());
+        return server_->endpointUrl();
+    }
+    /// Starts the server.
     opcua::Client& client() {
         if (!client_) {
             EXPECT_TRUE(server_->start());
@@ -64,10 +71,12 @@ public:
     }
 
 private:
-    static std::unique_ptr<opcua::Server> create(std::vector<std::string> nodesets) {
+    static std::unique_ptr<opcua::Server> create(std::vector<std::string> nodesets,
+                                                 std::vector<std::string> namespaces) {
         opcua::ServerOptions options;
         options.port = 0;
         options.nodesets = std::move(nodesets);
+        options.namespaces = std::move(namespaces);
         return opcua::Server::create(std::move(options)).value();
     }
 

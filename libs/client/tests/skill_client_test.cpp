@@ -158,6 +158,8 @@ TEST_F(SkillClient, FindsASkillWithItsTypeAndItsController) {
     ASSERT_TRUE(skills) << skills.error().message;
     ASSERT_THAT(*skills, SizeIs(1));
     EXPECT_EQ(skills->front().name, "JointPtpMoveSkill");
+    EXPECT_TRUE(readLacks(*client_, skills->front()).value().empty());
+    EXPECT_FALSE(open().locksDevice()) << "its Start is atomic";
     EXPECT_EQ(skills->front().type_name, "JointPtpMoveSkillType");
     EXPECT_THAT(skills->front().controllerName(), HasSubstr("Arm"));
 }

@@ -17,6 +17,7 @@ public:
 
     const std::string& name() const override { return name_; }
     const skill::SkillDescription& description() const override { return description_; }
+    std::string lacks() const override { return lacks_text; }
     Result<void> available() const override { return reachable; }
     skill::State state() const override { return state_now; }
     std::string reasonText() const override { return reason_text; }
@@ -85,6 +86,7 @@ public:
     std::vector<std::string> heard() { return std::exchange(calls, {}); }
     bool runs() const { return listener != nullptr; }
 
+    std::string lacks_text{};
     Result<void> reachable{};
     skill::State state_now = skill::State::ready;
     std::string reason_text{};

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "device_lock.hpp"
 #include "remote_skill/remote_used_skill.hpp"
 
 namespace metier::client {
@@ -52,7 +53,8 @@ void Connection::watch(opcua::Client& client) {
 Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
                                                     const std::shared_ptr<UsedSkillLink>& link) {
     const auto client = present();
-    METIER_ASSIGN(auto skill, AsyncSkill::open(*client, address, watchFor(*client, link)));
+    METIER_ASSIGN(auto skill,
+                  AsyncSkill::open(*client, address, watchFor(*client, link), locksOf(*client)));
     const auto controller = address.controllerName();
     auto name = controller.empty() ? address.name : fmt::format("{}/{}", controller, address.name);
     const std::lock_guard lock(mutex_);
@@ -62,6 +64,18 @@ Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
         uses_.push_back({std::move(name), link});
     }
     return std::make_shared<OpenSkill>(OpenSkill{client, std::move(skill)});
+}
+
+/// Made anew with each client; it ends with the last skill of that client.
+std::shared_ptr<DeviceLocks> Connection::locksOf(opcua::Client& client) {
+    const std::lock_guard lock(mutex_);
+    auto locks = locked_client_ == &client ? locks_.lock() : nullptr;
+    if (!locks) {
+        locks = std::make_shared<DeviceLocks>(client);
+        locks_ = locks;
+        locked_client_ = &client;
+    }
+    return locks;
 }
 
 AsyncSkill::Watch Connection::watchFor(const opcua::Client& client,

@@ -76,6 +76,7 @@ private:
     void watch(opcua::Client& client);
     client::AsyncSkill::Watch watchFor(const opcua::Client& client,
                                        const std::shared_ptr<UsedSkillLink>& link);
+    std::shared_ptr<DeviceLocks> locksOf(opcua::Client& client);
     void lose(const std::string& why);
     /// Whether all is there again.
     bool reconnect();
@@ -91,6 +92,9 @@ private:
     // Both guarded by mutex_; the client with its OpenSkills, whichever ends last.
     std::shared_ptr<opcua::Client> client_;
     std::vector<Use> uses_;
+    // Locks of the skills of locked_client_, which share them; guarded by mutex_.
+    std::weak_ptr<DeviceLocks> locks_;
+    const opcua::Client* locked_client_ = nullptr;
 
     mutable std::mutex mutex_;
     std::optional<SteadyTime> away_since_;  // guarded by mutex_

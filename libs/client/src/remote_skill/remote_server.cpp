@@ -61,11 +61,8 @@ Result<PendingUse> RemoteServer::open(const client::SkillAddress& skill, std::st
     const auto link = std::make_shared<UsedSkillLink>(executor_);
     METIER_ASSIGN(auto open, connection_->open(skill, link));
     METIER_ASSIGN(const auto now, open->skill.now());
-    if (!open->skill.knowsExecutions()) {
-        spdlog::warn(
-            "{}: {} has no StartWith: another client can write between its parameters and Start, "
-            "and it goes on if this server dies",
-            url(), skill.name);
+    if (const auto lacks = open->skill.lacks(); !lacks.empty()) {
+        spdlog::warn("{}: {} has {}", url(), skill.name, explanationOf(lacks));
     }
     return PendingUse{link, std::move(open), now, fmt::format("{} of {}", skill.name, name()),
                       std::move(origin)};

@@ -86,12 +86,16 @@ void RemoteUsedSkill::adopt(std::shared_ptr<OpenSkill> skill, const AsyncSkill::
     drop();
     skill_ = std::move(skill);
     description_ = skill_->skill.description();
+    lacks_ = textOf(skill_->skill.lacks());
     state_ = now.state;
     reason_text_ = now.reason_text;
     const bool runs = state_ == State::running || state_ == State::suspended;
-    if (runs && isOurs(now.execution_id)) {
-        spdlog::warn("{}: execution {} is {} and nobody waits for it: it is halted", name_,
-                     now.execution_id, toString(state_));
+    const bool may_be_ours = std::exchange(may_run_on_, false);
+    if (runs && (may_be_ours || isOurs(now.execution_id))) {
+        spdlog::warn(
+            "{}: {} is {} and nobody waits for it: it is halted", name_,
+            may_be_ours ? "the execution of before the loss" : "execution " + now.execution_id,
+            toString(state_));
         left_over_ = true;
         static_cast<void>(command(Method::halt));
     }
@@ -112,6 +116,7 @@ void RemoteUsedSkill::lost(const std::string& why) {
         tellReset(fail(Errc::connection_lost, why));
     }
     if (!execution_.empty()) {
+        may_run_on_ = !lacks_.empty();
         endLost(why);
     }
 }
@@ -357,6 +362,9 @@ void RemoteUsedSkill::endLost(std::string text) {
 
 void RemoteUsedSkill::end(UsedSkillEnd end) {
     execution_.clear();
+    if (skill_) {
+        skill_->skill.unlock();
+    }
     if (const auto unsure = std::exchange(unsure_, {}); !unsure.empty()) {
         haltIfRuns(unsure);
     }

@@ -28,6 +28,7 @@ public:
     const std::string& name() const override { return name_; }
     const skill::SkillDescription& description() const override { return description_; }
     std::string serverUrl() const override { return connection_.options().url; }
+    std::string lacks() const override { return lacks_; }
     Result<void> available() const override;
     skill::State state() const override { return state_; }
     std::string reasonText() const override { return reason_text_; }
@@ -83,12 +84,15 @@ private:
     std::string name_;
     std::string origin_;
     skill::SkillDescription description_;
+    std::string lacks_;
     // Shared with the work that waits for the server; null: lost
     std::shared_ptr<OpenSkill> skill_;
     std::string lost_;  // why there is none
     skill::State state_ = skill::State::halted;
     std::string reason_text_;
     bool left_over_ = false;
+    // An execution was under way when the connection was lost, at a server that names none.
+    bool may_run_on_ = false;
     // The Reset whose answer is awaited; nothing if none is. Earlier ones have lower numbers.
     std::optional<std::uint64_t> reset_;
     std::uint64_t reset_count_ = 0;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "metier/client/lack.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/skill/execution_record.hpp"
@@ -13,6 +14,12 @@
 #include "metier/skill/skill.hpp"
 
 namespace metier::client {
+
+class DeviceLocks;
+
+/// Makes the locks of devices that the skills of one client share; any thread, does not wait. They
+/// must end before their client.
+std::shared_ptr<DeviceLocks> makeDeviceLocks(opcua::Client& client);
 
 /// One skill of a server, for an owner that must not wait: requests are sent without waiting, and
 /// the client's thread calls back with their outcomes. A program that may wait is simpler with
@@ -57,8 +64,11 @@ public:
     /// Reads the skill's description and subscribes to its events; waits for the server. The first
     /// event may come before this returns.
     /// \param client must outlive the result
+    /// \param locks  shared by the skills of one client, so that two of the same device may run at
+    ///               once; null: the skill has its own
     /// Errors: connection_lost, timeout; those of the server.
-    static opcua::Answer<AsyncSkill> open(opcua::Client& client, SkillAddress address, Watch watch);
+    static opcua::Answer<AsyncSkill> open(opcua::Client& client, SkillAddress address, Watch watch,
+                                          std::shared_ptr<DeviceLocks> locks = nullptr);
     AsyncSkill(AsyncSkill&&) noexcept;
     AsyncSkill& operator=(AsyncSkill&&) noexcept;
     ~AsyncSkill();
@@ -74,6 +84,14 @@ public:
     /// cannot be told from one that was started here, and the server does not halt it when this
     /// client is lost.
     bool knowsExecutions() const noexcept;
+
+    /// Whether a start locks the skill's device, as SkillHandle::locksDevice().
+    bool locksDevice() const noexcept;
+    /// What a run cannot have, as SkillHandle::lacks().
+    std::vector<Lack> lacks() const;
+    /// Gives back the lock that the last start has taken; to be called when its execution is over.
+    /// Does not wait. The destructor does the same.
+    void unlock() const;
 
     /// Present state of the skill.
     struct Now {
@@ -91,9 +109,10 @@ public:
     opcua::Answer<Now> now() const;
 
     /// Sends StartWith, or writes and Start; `done` gets the execution's id. Running has been
-    /// committed then. Without StartWith `on_owner_loss` has no effect.
+    /// committed then. Without StartWith `on_owner_loss` has no effect, and the device is locked
+    /// first if it can be.
     /// Errors: also not_supported, for a lease without StartWith; not_found for an unknown
-    ///         parameter.
+    ///         parameter; locked, with the name of the client that has locked the device.
     opcua::Answer<> startWith(const skill::StartRequest& request, Done<std::string> done) const;
     /// Calls any method but StartWith, such as Suspend; `done` gets no value. A Suspend or Halt is
     /// answered before standstill.

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "metier/client/lack.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/skill/field.hpp"
@@ -80,13 +81,21 @@ public:
     /// without an error.
     opcua::Answer<> start() { return call(skill::Method::start); }
     /// Sets all parameters and starts, in one call. Running has been committed when this returns
-    /// without an error. A skill without StartWith is started by writes and Start.
+    /// without an error. A skill without StartWith is started by writes and Start, with its
+    /// device's lock if there is one, see locksDevice(); awaitEnd() gives the lock back.
     /// \return the execution's id; one of this handle alone, if the skill has no StartWith
     /// Errors: not_supported, for a lease or an action on the loss of the owner without StartWith;
+    ///         locked, with the name of the client that has locked the device;
     ///         the server's refusal, see skill::Program::startWith().
     opcua::Answer<std::string> startWith(const skill::StartRequest& request);
     /// Whether the server supports named executions: startWith() and execution().
     bool knowsExecutions() const noexcept;
+    /// Whether a start of a skill without named executions locks its device (LockingServices of OPC
+    /// 10000-100) until the end of the run. Without, another client may write between the
+    /// parameters and Start.
+    bool locksDevice() const noexcept;
+    /// What a run cannot have, since the server is of another maker.
+    std::vector<Lack> lacks() const;
     /// Whether startWith() sends the execution on whose behalf it starts: the server keeps records.
     bool takesParents() const noexcept;
     /// Asks whether startWith() would succeed now; nothing moves.

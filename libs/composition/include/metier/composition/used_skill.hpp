@@ -89,6 +89,10 @@ public:
     virtual const skill::SkillDescription& description() const = 0;
     /// Address of its server; empty for a skill of the same server.
     virtual std::string serverUrl() const { return {}; }
+    /// Lists for a person what an execution cannot have, since its server is of another maker: "no
+    /// atomic start, no dead-man". Such a server does not record it either. Empty for servers of
+    /// metier.
+    virtual std::string lacks() const { return {}; }
 
     /// Checks that the skill can be reached.
     /// Errors: connection_lost.

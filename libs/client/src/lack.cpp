@@ -1,0 +1,47 @@
+#include "metier/client/lack.hpp"
+
+#include <fmt/format.h>
+
+namespace metier::client {
+namespace {
+
+std::string_view consequenceOf(Lack lack) noexcept {
+    switch (lack) {
+        case Lack::atomic_start:
+            return "another client may write between its parameters and Start";
+        case Lack::dead_man:
+            return "it goes on if its client dies";
+    }
+    return "";
+}
+
+}  // namespace
+
+std::string_view toString(Lack lack) noexcept {
+    switch (lack) {
+        case Lack::atomic_start:
+            return "atomic start";
+        case Lack::dead_man:
+            return "dead-man";
+    }
+    return "";
+}
+
+std::string textOf(const std::vector<Lack>& lacks) {
+    std::string text;
+    for (const auto lack : lacks) {
+        text += fmt::format("{}no {}", text.empty() ? "" : ", ", toString(lack));
+    }
+    return text;
+}
+
+std::string explanationOf(const std::vector<Lack>& lacks) {
+    std::string text;
+    for (const auto lack : lacks) {
+        text += fmt::format("{}no {} ({})", text.empty() ? "" : ", ", toString(lack),
+                            consequenceOf(lack));
+    }
+    return text;
+}
+
+}  // namespace metier::client
