@@ -117,7 +117,11 @@ void ServerProcess::kill() {
 }
 
 std::unique_ptr<opcua::Client> connectTo(const std::string& url) {
-    return orThrow(opcua::Client::connect(url));
+    opcua::ClientOptions options;
+    // These only guard against hanging: the machine is busy with other tests.
+    options.connect_timeout = std::chrono::seconds(60);
+    options.call_timeout = std::chrono::seconds(30);
+    return orThrow(opcua::Client::connect(url, options));
 }
 
 client::SkillHandle openSkill(opcua::Client& client, const std::string& name) {

@@ -102,6 +102,7 @@ protected:
 
 TEST_P(ServerDeath, LeavesAnArmThatStandsSoon) {
     constexpr int kDeaths = 3;  // one of so many is not held up by the machine's other work
+    constexpr int kLateCycles = 3;
     std::chrono::nanoseconds took{};
     DyingServer::Rest rest;
     std::chrono::nanoseconds least{};
@@ -118,9 +119,10 @@ TEST_P(ServerDeath, LeavesAnArmThatStandsSoon) {
         robot_->signal(GetParam().signal);
         rest = robot_->awaitRest();
         took = rest.moved_last - signalled;
-        // A machine that is late with the controller's cycles is late with the stop by as much.
+        // A machine that is late with the controller's cycles is late with the stop by some of
+        // them.
         least = -100ms - rest.longest_cycle;
-        most = GetParam().longest + rest.longest_cycle;
+        most = GetParam().longest + kLateCycles * rest.longest_cycle;
     }
     EXPECT_GE(took, least) << "the arm stood before";
     EXPECT_LE(took, most);
