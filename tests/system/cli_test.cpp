@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "metier_program.hpp"
 
@@ -21,8 +22,8 @@ constexpr int kUsage = 2;
 // Nobody listens on the port of a service that sends nothing but time.
 constexpr const char* kNobody = "opc.tcp://127.0.0.1:37";
 const std::vector<std::string> kCommands{
-    "demo", "up",    "serve", "list",       "run",   "watch", "halt",    "square", "fk",
-    "ik",   "check", "plot",  "completion", "trust", "user",  "history", "replay", "trace"};
+    "demo",  "up",   "serve",      "list",  "run",  "watch",   "halt",   "square", "fk",   "ik",
+    "check", "plot", "completion", "trust", "user", "history", "replay", "trace",  "robot"};
 
 /// A cell file of the test, removed at its end.
 class CellFile {
@@ -123,6 +124,19 @@ TEST(Cli, CompletionScriptsParseInTheirShell) {
     }
 }
 
+TEST(Cli, FishScriptClosesItsQuotes) {
+    std::istringstream script(runMetier({"completion", "fish"}).output);
+    std::string line;
+    while (std::getline(script, line)) {
+        std::size_t quotes = 0;
+        for (std::size_t i = 0; i < line.size(); ++i) {
+            i += line[i] == '\\' ? 1 : 0;
+            quotes += i < line.size() && line[i] == '\'' && (i == 0 || line[i - 1] != '\\') ? 1 : 0;
+        }
+        EXPECT_EQ(quotes % 2, 0U) << line;
+    }
+}
+
 TEST(Cli, BashCompletesCommandsAndOptions) {
     const CellFile file(runMetier({"completion", "bash"}).output);
     const auto complete = [&](const std::string& words, const std::string& index) {
@@ -134,6 +148,8 @@ TEST(Cli, BashCompletesCommandsAndOptions) {
     };
     EXPECT_EQ(complete("metier sq", "1"), "square");
     EXPECT_EQ(complete("metier square --sv", "2"), "--svg");
+    EXPECT_EQ(complete("metier robot imp", "2"), "import");
+    EXPECT_EQ(complete("metier robot import --sr", "3"), "--srdf");
 }
 
 /// A cell file that is wrong, and what is said about it behind its name.

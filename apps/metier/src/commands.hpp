@@ -59,6 +59,7 @@ void addFk(CLI::App& app, CommandContext& context);
 void addIk(CLI::App& app, CommandContext& context);
 void addCheck(CLI::App& app, CommandContext& context);
 void addPlot(CLI::App& app, CommandContext& context);
+void addRobotFiles(CLI::App& app, CommandContext& context);
 void addGraph(CLI::App& app, CommandContext& context);
 void addTypes(CLI::App& app, CommandContext& context);
 void addSkillCommands(CLI::App& app, CommandContext& context);

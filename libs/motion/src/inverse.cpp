@@ -304,7 +304,7 @@ std::optional<ReachMiss> Kinematics::outOfReach(const Pose& base_from_flange,
     constexpr double calibration = 0.02;  // the exact arm may reach so much less [m]
     const double rounding = calibrated_ ? calibration : kResidual;
     if (kind_ == IkKind::numeric) {
-        const double distance = (base_from_flange.translation - reachCentre(reference)).norm();
+        const double distance = leastDistanceFromAxis2(base_from_flange.translation);
         return distance > reach_ + rounding
                    ? std::optional(ReachMiss{"the flange", 1, distance, reach_})
                    : std::nullopt;

@@ -106,10 +106,16 @@ Kinematics::Kinematics(const ChainDescription& chain) : axis_count_(chain.joints
     }
 }
 
-Vector3d Kinematics::reachCentre(const JointVector& q) const noexcept {
-    const Transform frame = begin(fixed_[0], q[0]);
-    return axis_count_ < 2 ? frame.translation
-                           : Vector3d(frame.translation + frame.rotation * fixed_[1].translation);
+double Kinematics::leastDistanceFromAxis2(const Vector3d& point) const noexcept {
+    const Vector3d from_first = point - zero_.point[0];
+    if (axis_count_ < 2) {
+        return from_first.norm();
+    }
+    // Axis 1 carries the origin of axis 2 round a circle.
+    const Vector3d& axis = zero_.axis[0];
+    const Vector3d second = zero_.point[1] - zero_.point[0];
+    return std::hypot(axis.dot(from_first - second),
+                      axis.cross(from_first).norm() - axis.cross(second).norm());
 }
 
 Pose Kinematics::forward(const JointVector& q) const noexcept {

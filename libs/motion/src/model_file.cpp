@@ -204,6 +204,34 @@ ChainDescription readChain(const TomlTable& root) {
     return chain;
 }
 
+/// A pair of link numbers, such as [1, 5].
+void readUncompared(const cell::TomlValue& pair, std::size_t link_count,
+                    RobotAppearance& appearance) {
+    std::vector<std::size_t> links;
+    for (const cell::TomlValue& item : pair.items()) {
+        const auto link = item.integer();
+        if (link && *link >= 0 && *link < static_cast<std::int64_t>(link_count)) {
+            links.push_back(static_cast<std::size_t>(*link));
+        }
+    }
+    if (links.size() != 2 || pair.items().size() != 2 || links[0] == links[1]) {
+        pair.reject(fmt::format("not two different links of 0 to {}", link_count - 1));
+        return;
+    }
+    appearance.not_compared.push_back({links[0], links[1]});
+}
+
+void readNotCompared(const TomlTable& root, std::size_t link_count, RobotAppearance& appearance) {
+    const auto pairs = root.value("not_compared");
+    if (pairs && !pairs->isList()) {
+        pairs->reject("not a list of pairs of links");
+    } else if (pairs) {
+        for (const cell::TomlValue& pair : pairs->items()) {
+            readUncompared(pair, link_count, appearance);
+        }
+    }
+}
+
 void readShape(const TomlTable& root, std::size_t link_count, RobotAppearance& appearance) {
     for (const TomlTable& table : root.tables("capsule")) {
         appearance.capsules.push_back(readCapsule(table, link_count));
@@ -211,6 +239,7 @@ void readShape(const TomlTable& root, std::size_t link_count, RobotAppearance& a
     for (const TomlTable& table : root.tables("visual")) {
         appearance.visual.push_back(readVisual(table, link_count));
     }
+    readNotCompared(root, link_count, appearance);
 }
 
 }  // namespace
@@ -227,7 +256,8 @@ Result<RobotModel> RobotModel::parse(std::string_view text, const std::string& n
 
 Result<RobotModel> RobotModel::read(const TomlFile& toml, const std::string& file_name) {
     const TomlTable root = toml.root();
-    RobotAppearance appearance{root.text("name"), root.text("maker"), root.text("product"), {}, {}};
+    RobotAppearance appearance{
+        root.text("name"), root.text("maker"), root.text("product"), {}, {}, {}};
     ChainDescription chain = readChain(root);
     readShape(root, chain.joints.size() + 1, appearance);
     METIER_TRY(toml.finish());

@@ -9,12 +9,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kJointsBetween = 3;
-constexpr std::size_t kMostCapsules = 32;
-
 double ratio(double numerator, double denominator) noexcept {
     constexpr double tiny = 1e-18;
     return denominator < tiny ? 0.0 : std::clamp(numerator / denominator, 0.0, 1.0);
+}
+
+bool compared(const RobotModel& model, std::size_t first, std::size_t second) {
+    const auto [low, high] = std::minmax(first, second);
+    return high - low >= kLeastJointsBetween &&
+           std::none_of(model.notCompared().begin(), model.notCompared().end(),
+                        [low = low, high = high](const UncomparedLinks& pair) {
+                            return std::minmax(pair.first, pair.second) == std::minmax(low, high);
+                        });
 }
 
 }  // namespace
@@ -44,8 +50,7 @@ SelfCollision::SelfCollision(const RobotModel& model)
     }
     for (std::size_t i = 0; i < capsules_.size(); ++i) {
         for (std::size_t k = i + 1; k < capsules_.size(); ++k) {
-            const auto [low, high] = std::minmax(capsules_[i].link, capsules_[k].link);
-            if (high - low >= kJointsBetween) {
+            if (compared(model, capsules_[i].link, capsules_[k].link)) {
                 pairs_.push_back({i, k});
             }
         }

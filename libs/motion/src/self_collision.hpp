@@ -18,7 +18,8 @@ struct LinkPair {
 
 /// Checks whether links of an arm touch each other, by the capsules of its model.
 ///
-/// Links fewer than three joints apart are not compared: they touch by construction.
+/// Links fewer than three joints apart are not compared: they touch by construction. Nor are the
+/// pairs that the model names.
 /// Threading: immutable, any thread; checking does not allocate.
 class SelfCollision {
 public:

@@ -33,6 +33,18 @@ TEST(Frame, GivesBackTheAnglesOfAPose) {
     }
 }
 
+TEST(Frame, DescribesTheSameRotationCloseToGimbalLock) {
+    std::mt19937_64 random(2);
+    std::uniform_real_distribution<double> turn(-3.1, 3.1);
+    for (double off = 1e-14; off < 1e-2; off *= 3) {
+        for (const double b : {kPi / 2 - off, off - kPi / 2}) {
+            const Pose pose = toPose({0, 0, 0, turn(random), b, turn(random)});
+            EXPECT_LT(rotationAngleBetween(toPose(toFrame(pose)).rotation, pose.rotation), 5e-12)
+                << off;
+        }
+    }
+}
+
 TEST(Frame, DescribesTheSameRotationAtGimbalLock) {
     for (const double b : {kPi / 2, -kPi / 2}) {
         for (double a = -3.0; a < 3.1; a += 0.5) {

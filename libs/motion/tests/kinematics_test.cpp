@@ -225,6 +225,27 @@ RobotModel offsetWristArm() {
     return RobotModel::fromChain(chain).value();
 }
 
+TEST(Kinematics, ReachesAllRoundAnArmWhoseSecondAxisIsBesideItsFirst) {
+    ChainDescription chain = loadRobot("edo").chain();
+    chain.joints[1].parent_from_joint.translation.x() = 0.3;
+    chain.joints[4].parent_from_joint.translation.y() = 0.05;
+    const RobotModel model = RobotModel::fromChain(chain).value();
+    const Kinematics& arm = model.kinematics();
+    ASSERT_EQ(arm.ikKind(), IkKind::numeric);
+    std::mt19937_64 random(9);
+    for (int i = 0; i < 300; ++i) {
+        const Pose pose = arm.forward(randomPosition(model, random));
+        EXPECT_FALSE(arm.outOfReach(pose, model.home()));
+        const auto solution = arm.inverse(pose, {model.home(), {}, {}});
+        ASSERT_TRUE(solution) << solution.error().message;
+    }
+    // The other way round the base, as far as axis 2 and the links allow.
+    const Pose far{{-0.3 - arm.reach() - 0.01, 0, 0.337}, Eigen::Quaterniond::Identity()};
+    const auto miss = arm.outOfReach(far, model.home());
+    ASSERT_TRUE(miss);
+    EXPECT_NEAR(miss->excess(), 0.01, 1e-9);
+}
+
 TEST(Kinematics, SolvesAnyOtherChainNumerically) {
     const RobotModel model = offsetWristArm();
     EXPECT_EQ(model.kinematics().ikKind(), IkKind::numeric);

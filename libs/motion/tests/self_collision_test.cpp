@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+#include <iterator>
 #include <random>
 
 #include "metier/motion/planner.hpp"
@@ -69,6 +71,32 @@ TEST(SelfCollision, RefusesAMoveThatFoldsTheWristIntoTheBaseAndNamesBothLinks) {
     EXPECT_THAT(plan.error().error.message, HasSubstr("wrist"));
     EXPECT_THAT(plan.error().error.message, HasSubstr("would touch"));
     EXPECT_GT(plan.error().fraction, 0.0);
+}
+
+std::string ur5WithoutPairs(const std::string& pairs) {
+    std::ifstream file(std::string(METIER_MODELS_DIR) + "/ur5.toml");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    return "not_compared = " + pairs + "\n" + text;
+}
+
+TEST(SelfCollision, DoesNotCompareThePairsThatTheModelNames) {
+    const SelfCollision all(loadRobot("ur5"));
+    const auto model = RobotModel::parse(ur5WithoutPairs("[[4, 0], [1, 2], [0, 4]]"), "ur5.toml");
+    ASSERT_TRUE(model) << model.error().message;
+    EXPECT_EQ(SelfCollision(*model).pairCount(), all.pairCount() - 1);
+    // Folded until the wrist is in the base: link 4 is deepest in it.
+    const JointVector folded{0, -2.2, 2.9, -0.5, -1.57, 0};
+    EXPECT_EQ(all.nearest(folded)->second, 4U);
+    EXPECT_NE(SelfCollision(*model).nearest(folded)->second, 4U);
+}
+
+TEST(SelfCollision, RefusesPairsThatAreNone) {
+    for (const char* wrong : {"[[0, 7]]", "[[0]]", "[[1, 1]]", "[[0, 1, 2]]", "[[0, -1]]",
+                              "[[0, 1.5]]", "[3]", "3", "[[0, \"a\"]]"}) {
+        const auto model = RobotModel::parse(ur5WithoutPairs(wrong), "ur5.toml");
+        ASSERT_FALSE(model) << wrong;
+        EXPECT_THAT(model.error().message, HasSubstr("ur5.toml:1: not_compared")) << wrong;
+    }
 }
 
 TEST(SelfCollision, HasNothingToCompareWithoutCapsules) {

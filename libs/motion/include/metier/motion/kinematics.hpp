@@ -223,7 +223,7 @@ private:
                                IkKind method) const;
     JointSolutions closedForm(const Pose& base_from_flange, const JointVector& reference,
                               double redundancy_angle) const noexcept;
-    Eigen::Vector3d reachCentre(const JointVector& q) const noexcept;
+    double leastDistanceFromAxis2(const Eigen::Vector3d& point) const noexcept;
     bool polish(const Transform& target, JointVector& solution) const noexcept;
 
     std::size_t axis_count_ = 0;

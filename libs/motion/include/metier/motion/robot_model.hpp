@@ -17,8 +17,14 @@ class TomlFile;
 
 namespace metier::motion {
 
+/// Fewest joints between two links that self-collision compares.
+inline constexpr std::size_t kLeastJointsBetween = 3;
+/// Most capsules of a model that count.
+inline constexpr std::size_t kMostCapsules = 32;
+
 /// A cylinder with round ends around a link, for self-collision. Links whose numbers differ by less
-/// than 3 may overlap: they are not compared. Only the first 32 of a model count.
+/// than kLeastJointsBetween may overlap: they are not compared. Only the first kMostCapsules of a
+/// model count.
 struct Capsule {
     /// Link number: 0 is the base; i is the link behind axis i, which that axis moves.
     std::size_t link = 0;
@@ -28,6 +34,12 @@ struct Capsule {
     Eigen::Vector3d to;
     /// Radius [m], > 0.
     double radius = 0;
+};
+
+/// Two links that self-collision does not compare, by their numbers as in Capsule.
+struct UncomparedLinks {
+    std::size_t first = 0;
+    std::size_t second = 0;
 };
 
 /// A capped cone with rounded edges to draw a link with.
@@ -58,6 +70,8 @@ struct RobotAppearance {
     std::string product;
     /// Shape for self-collision; empty: it is not checked.
     std::vector<Capsule> capsules;
+    /// Pairs of links that are not compared, in addition to links that are close in the chain.
+    std::vector<UncomparedLinks> not_compared;
     /// Shape to draw.
     std::vector<VisualPrimitive> visual;
 };
@@ -109,6 +123,9 @@ public:
     /// Controller cycle [s].
     double cycleTime() const noexcept { return chain_.cycle_time; }
     const std::vector<Capsule>& capsules() const noexcept { return appearance_.capsules; }
+    const std::vector<UncomparedLinks>& notCompared() const noexcept {
+        return appearance_.not_compared;
+    }
     const std::vector<VisualPrimitive>& visual() const noexcept { return appearance_.visual; }
 
     /// Finds a tool frame by its name; "" and "flange" are the flange itself, without mass.
