@@ -196,7 +196,10 @@ Declaration readParameter(const TomlTable& table, const std::string& name) {
 }
 
 std::string readNamespace(const TomlTable& table, std::string preset) {
-    auto uri = table.textOr("namespace", std::move(preset));
+    if (!table.has("namespace") && !preset.empty()) {
+        return preset;
+    }
+    auto uri = table.textOr("namespace", "");
     if (uri.find(':') == std::string::npos || uri.find_first_of(" \t\n") != std::string::npos) {
         table.reject("namespace", fmt::format("\"{}\" is no URI, such as urn:example:line", uri));
     }

@@ -95,6 +95,7 @@ unit = "m"
 [uses.line]
 type = "CartesianLinearMoveSkillType"
 [[step]]
+name = "lift"
 run = "line"
 with.TargetPosition = [0, 0, {{ from = "Height" }}, 0, 0, 0]
 )";
