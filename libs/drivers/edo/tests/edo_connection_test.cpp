@@ -124,7 +124,11 @@ protected:
     }
     bool waitFor(const device::Arm& arm, SafetyState state) {
         std::unique_lock lock(mutex_);
-        return changed_.wait_for(lock, 20s, [&] { return arm.safety().state == state; });
+        const auto deadline = std::chrono::steady_clock::now() + 20s;
+        while (arm.safety().state != state && std::chrono::steady_clock::now() < deadline) {
+            changed_.wait_for(lock, 5ms);  // changes that follow each other may not be reported
+        }
+        return arm.safety().state == state;
     }
     /// Waits until the arm's safety says so; what it says then. It need not change its state.
     std::string tellsSoon(const device::Arm& arm, const std::string& part) {
