@@ -42,8 +42,8 @@ std::string planningOf(const motion::RobotModel& model) {
     }
     return fmt::format(
         "all moves can be planned; inverse kinematics by iteration, since the axes have none of "
-        "the structures with a closed form: it finds one solution instead of all, not always the "
-        "nearest, and close to the limits sometimes none{}",
+        "the structures with a closed form: it finds one solution instead of all, and not always "
+        "the nearest{}",
         model.axisCount() == motion::kMaxAxes ? "; there is no arm angle" : "");
 }
 
