@@ -1,4 +1,5 @@
-// NodeSet2.xml files that a cell file lists: what clients see of them, and how a server refuses them.
+// NodeSet2.xml files that a cell file lists: what clients see of them, and how a server refuses
+// them.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -72,7 +73,8 @@ std::uint16_t indexOf(opcua::Client& client, const std::string& uri) {
 /// BrowseNames of what is below a node.
 std::vector<std::string> namesBelow(opcua::Client& client, const NodeId& node) {
     std::vector<std::string> names;
-    for (const auto& reference : client.browse({.node = node}).value()) {
+    const auto found = client.browse({.node = node}).value();
+    for (const auto& reference : found) {
         names.push_back(reference.browse_name.name);
     }
     return names;
