@@ -60,10 +60,10 @@ std::string zshScript(const CLI::App& app) {
     return "autoload -U +X bashcompinit && bashcompinit\n" + bashScript(app);
 }
 
-/// A text in single quotes for fish.
+/// The first line of a text in single quotes for fish.
 std::string fishText(const std::string& text) {
     std::string quoted = "'";
-    for (const char letter : text) {
+    for (const char letter : text.substr(0, text.find('\n'))) {
         quoted += letter == '\'' || letter == '\\' ? "\\" : "";
         quoted += letter;
     }
