@@ -42,6 +42,10 @@ public:
     /// Asks for a new read and returns its contents; those of the last read if the new one takes
     /// longer than the patience. While such a slow read is under way, get() returns at once. Never
     /// null; the contents never change.
+    ///
+    /// Callers share one reading thread: a read that begins after the call answers it, so several
+    /// calls at the same time may be answered by one read. The first caller that meets a hanging
+    /// disk waits for the patience; the next ones do not wait until that read has ended.
     std::shared_ptr<const T> get() {
         std::unique_lock lock(mutex_);
         const auto wanted = ++asked_;
@@ -53,6 +57,8 @@ public:
     }
 
 private:
+    /// Body of the reading thread. Calls read_ without the lock, so that get() never waits for more
+    /// than its patience. After a stop request it ends once every call is answered.
     void run(const std::stop_token& stop) {
         std::unique_lock lock(mutex_);
         while (changed_.wait(lock, stop, [this] { return done_ < asked_; })) {
@@ -68,6 +74,8 @@ private:
         }
     }
 
+    // Numbers of reads count up from 1: a call of get() is answered as soon as done_ has reached
+    // the number that it drew from asked_.
     const std::chrono::milliseconds patience_;
     std::mutex mutex_;  // guards all members but patience_, read_ and thread_
     std::condition_variable_any changed_;

@@ -23,6 +23,8 @@ public:
 };
 
 /// The machine's own clocks: steady_clock and system_clock.
+///
+/// Threading: as Clock; a value without state, so that each user may have one of its own.
 class SystemClock final : public Clock {
 public:
     SteadyTime now() const noexcept override { return std::chrono::steady_clock::now(); }
@@ -33,6 +35,10 @@ public:
 /// and 2026-01-01T00:00:00Z.
 ///
 /// Threading: any thread; advance() does not wake threads that wait for a time.
+///
+///     ManualClock clock;
+///     RecentMean mean(times, clock, 10s);  // code under test keeps a `const Clock&`
+///     clock.advance(10s);                  // a test of ten seconds that takes none
 class ManualClock final : public Clock {
 public:
     SteadyTime now() const noexcept override;
@@ -42,6 +48,7 @@ public:
     void advance(std::chrono::nanoseconds step) noexcept;
 
 private:
+    // Sum of all steps [ns]; both times are derived from it, so they cannot differ.
     std::atomic<std::chrono::nanoseconds::rep> elapsed_ns_{0};
 };
 

@@ -11,6 +11,9 @@ namespace metier {
 
 /// Kinds of failure, divided by what the caller can do about them. One table in opcua_skill maps
 /// these to StatusCodes.
+///
+/// Add new kinds before `internal`: the table of names in error.cpp ends there, and its size is
+/// checked at compile time.
 enum class Errc {
     /// Wrong size, not finite, malformed: correct the call.
     invalid_argument,
@@ -56,6 +59,10 @@ enum class Errc {
 std::string_view toString(Errc code) noexcept;
 
 /// A failure: `code` is for the program, `message` for the person, with value, limit and unit.
+///
+///     if (const auto done = arm.halt(); !done && done.error().code == Errc::connection_lost) {
+///         reconnect();
+///     }
 struct Error {
     /// Kind of the failure.
     Errc code = Errc::internal;
@@ -63,16 +70,16 @@ struct Error {
     std::string message;
 };
 
-/// A value, or the Error that explains why there is none.
-template <typename T = void>
 /// A value, or the Error that explains why there is none. Reading the value of a failed one is
 /// undefined: test it first:
 ///
 ///     if (const auto model = RobotModel::load(file); model) { use(*model); }
 ///     else { print(model.error().message); }
+template <typename T = void>
 using Result = tl::expected<T, Error>;
 
 /// A failed Result: `return fail(Errc::not_found, "no axis 7");`
+/// \param message one sentence without a full stop: thing, value, limit and unit
 inline tl::unexpected<Error> fail(Errc code, std::string message) {
     return tl::unexpected<Error>(Error{code, std::move(message)});
 }
@@ -103,6 +110,8 @@ inline tl::unexpected<Error> fail(Error error) {
     METIER_ASSIGN_AS(METIER_NEW_NAME(__COUNTER__), variable, __VA_ARGS__)
 
 // NOLINTBEGIN(bugprone-macro-parentheses): a declaration cannot be in parentheses
+// Not for callers: the parts of the two macros above. __COUNTER__ gives the Result a name of its
+// own, so that a function can use them several times.
 #define METIER_TRY_AS(result, ...)                          \
     if (auto result = (__VA_ARGS__); !result) {             \
         return ::tl::unexpected(std::move(result).error()); \

@@ -12,6 +12,10 @@ namespace metier {
 /// Threading: any threads, at the same time. No call waits, locks or allocates, so a cycle thread
 /// may add. read() sees every value that was added before it, and maybe some of those that are
 /// added while it runs: counts and sum may then differ by those.
+///
+///     TimeHistogram jitter;
+///     jitter.add(85e-6);                  // cycle thread; falls into the bucket up to 100 us
+///     const auto now = jitter.read();     // any other thread
 class TimeHistogram {
 public:
     /// Largest value of each bucket [s]; it belongs to the bucket. The last bucket has no bound.
@@ -51,6 +55,7 @@ public:
     }
 
 private:
+    // Relaxed order is enough: each number stands alone, and no other memory is published by them.
     // Both since the histogram was made.
     std::array<std::atomic<std::uint64_t>, kBuckets> counts_{};
     std::atomic<double> sum_{0};

@@ -7,11 +7,6 @@
 
 namespace metier {
 
-/// Hands the newest value from one thread to another; older ones are overwritten.
-///
-/// Threading: one writer thread, one reader thread. Neither locks, waits or allocates, so a cycle
-/// thread may be either. Several readers need one LatestValue each.
-template <typename T>
 /// Hands the newest value from one thread to another; older ones are overwritten:
 ///
 ///     LatestValue<double> speed;
@@ -20,6 +15,7 @@ template <typename T>
 ///
 /// Threading: one writer thread, one reader thread. Neither locks, waits or allocates, so a cycle
 /// thread may be either. Several readers need one LatestValue each, or a device::SharedValue.
+template <typename T>
 class LatestValue {
     static_assert(std::is_trivially_copyable_v<T>, "copied between threads byte by byte");
 
@@ -51,6 +47,8 @@ private:
     static constexpr std::uint8_t kFresh = 4;
     static constexpr std::uint8_t kIndex = 3;
 
+    // Three buffers: one belongs to the writer, one to the reader, one is in the middle. Each side
+    // gives its buffer for the middle one in a single exchange, so neither ever sees half a value.
     std::array<T, 3> buffers_{};
     std::atomic<std::uint8_t> middle_{1};
     std::uint8_t write_index_ = 0;

@@ -6,6 +6,7 @@
 namespace metier {
 
 /// Value for "no limit".
+/// JSON has no number for it: jsonOf() in libs/skill writes null.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// One millimetre [m]: `20 * kMillimetre` is a length in metres.
 inline constexpr double kMillimetre = 1e-3;

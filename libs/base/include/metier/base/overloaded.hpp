@@ -2,11 +2,10 @@
 
 namespace metier {
 
-/// Visitor for std::visit made of lambdas, one for each alternative of a std::variant.
-template <typename... Functions>
 /// Visitor for std::visit made of lambdas, one for each alternative of a std::variant:
 ///
 ///     std::visit(overloaded{[](double number) { ... }, [](const auto& other) { ... }}, value);
+template <typename... Functions>
 struct overloaded : Functions... {
     using Functions::operator()...;
 };

@@ -11,11 +11,6 @@
 
 namespace metier {
 
-/// A bounded first-in-first-out queue between threads.
-///
-/// Threading: any number of producers and consumers. Not for a cycle thread: it locks.
-/// No call waits but popUntil(), which waits until its deadline at most.
-template <typename T>
 /// A bounded first-in-first-out queue between threads:
 ///
 ///     while (auto job = jobs.popUntil(deadline)) { ... }  // consumer
@@ -24,13 +19,16 @@ template <typename T>
 /// Threading: any number of producers and consumers. Not for a cycle thread: it locks.
 /// No call waits but popUntil(), which waits until its deadline at most. No thread may use it when
 /// it is destroyed.
+template <typename T>
 class Queue {
 public:
+    /// No memory is reserved for it.
     /// \param capacity largest number of elements, > 0
     explicit Queue(std::size_t capacity) : capacity_(capacity) {}
 
     /// Appends a value; returns false, and drops the value, if the queue is full or closed. Does
     /// not wait.
+    /// \return true if the value is in the queue; one consumer that waits for it is woken
     bool tryPush(T value) {
         {
             const std::lock_guard lock(mutex_);
@@ -45,6 +43,8 @@ public:
 
     /// Takes the oldest element; waits for one until `deadline`. Nothing if none came by then, or
     /// if the queue is closed and empty. A deadline that is over takes what is there.
+    /// Elements come in the order in which they were pushed; which of several waiting consumers
+    /// gets the next one is not defined.
     std::optional<T> popUntil(SteadyTime deadline) {
         std::unique_lock lock(mutex_);
         changed_.wait_until(lock, deadline, [this] { return closed_ || !values_.empty(); });
@@ -67,6 +67,8 @@ public:
     }
 
 private:
+    // The mutex guards values_ and closed_. It is never held while a consumer works on an element,
+    // nor while one is woken.
     const std::size_t capacity_;
     std::mutex mutex_;
     std::condition_variable changed_;

@@ -13,6 +13,9 @@ namespace metier {
 /// time, such as a page of metrics.
 ///
 /// Threading: one thread at a time reads. Adding to the histogram is never delayed by it.
+///
+///     RecentMean mean(arm.jitter, clock, 10s);
+///     if (const auto seconds = mean.read()) { show(*seconds); }  // of the last 10 s or more
 class RecentMean {
 public:
     /// \param times its contents so far do not count; must outlive this
@@ -26,6 +29,7 @@ public:
     std::optional<double> read();
 
 private:
+    /// Number of all values and their sum [s] since the histogram was made.
     struct Total {
         std::uint64_t count = 0;
         double sum = 0;

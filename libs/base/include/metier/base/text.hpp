@@ -22,6 +22,9 @@ std::string_view trimmed(std::string_view text, std::string_view blanks = kBlank
 
 /// Parts between separators, including empty ones: "a,,b," has four parts. An empty text has none.
 /// The parts are not trimmed.
+/// \param separator one byte; a multi-byte UTF-8 character cannot be one
+///
+///     for (const auto part : split("a, b", ',')) { use(trimmed(part)); }  // "a", "b"
 std::vector<std::string_view> split(std::string_view text, char separator);
 
 /// The text with ASCII letters in lower case, all other bytes as they are, whatever the locale is.
@@ -30,11 +33,13 @@ std::string inLowerCase(std::string_view text);
 std::string inUpperCase(std::string_view text);
 
 /// Number that the whole text spells, decimal if T is an integer. Nothing if the text has any other
-/// character (a blank or a leading '+' included), or if T cannot hold the number.
-template <typename T>
-/// Number that the whole text spells, decimal if T is an integer. Nothing if the text has any other
 /// character (a blank or a leading '+' included), or if T cannot hold the number. "inf" and "nan"
 /// are numbers for a floating-point T: check std::isfinite().
+///
+///     numberIn<std::uint16_t>("4840");   // 4840
+///     numberIn<std::uint16_t>("70000");  // nothing: more than 16 bits hold
+///     numberIn<double>("1e-3");          // 0.001
+template <typename T>
 std::optional<T> numberIn(std::string_view text) noexcept {
     T number{};
     const auto* const end = text.data() + text.size();

@@ -14,15 +14,24 @@ namespace metier {
 ///
 /// Measures every 5 ms on a thread of its own. Threading: takeLongest() from any thread; it does
 /// not wait.
+/// Its destructor ends the thread and does not wait for the period to end.
+///
+///     WakeUpDelay delay;
+///     ...                                            // whatever is measured
+///     const auto uncertain = delay.takeLongest();    // the measurement is no more precise
 class WakeUpDelay {
 public:
     /// Begins to measure.
     WakeUpDelay() : thread_([this](const std::stop_token& stop) { measure(stop); }) {}
 
     /// Longest delay since the last call, from all callers together; 0 if none was measured.
+    /// Never negative. The value is taken: a second call at once gives 0 if nothing was measured
+    /// between.
     std::chrono::nanoseconds takeLongest() { return longest_.exchange({}); }
 
 private:
+    /// Body of the measuring thread: sleeps for a period, compares the wake-up with the time that
+    /// was due, keeps the larger value. A stop request ends the sleep at once.
     void measure(const std::stop_token& stop) {
         constexpr std::chrono::milliseconds kPeriod{5};
         std::mutex mutex;
