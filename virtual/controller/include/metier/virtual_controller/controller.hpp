@@ -37,6 +37,7 @@ struct InjectionHelp {
 };
 
 /// An injection that needs no argument and cannot fail.
+/// Its argument is ignored.
 std::function<Result<void>(const std::string& value)> always(std::function<void()> act);
 
 /// Performs the one of `known` that has the name. Threads: the controller's.

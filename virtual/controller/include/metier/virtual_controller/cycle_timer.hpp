@@ -15,6 +15,10 @@ namespace metier::virtual_controller {
 /// calls are caught up by the rule of TimeBase.
 ///
 /// Threading: created, used and destroyed on the thread that runs the io_context.
+///
+///     CycleTimer cycle(context, 8ms, [this] { step(); });   // 125 Hz, as a UR5 has
+///
+/// Its end cancels the next call; a call that is under way cannot be interrupted.
 class CycleTimer {
 public:
     /// Begins at once; the first call is one period later.
@@ -31,6 +35,7 @@ public:
     void setPeriod(std::chrono::nanoseconds period) noexcept { next_period_ = period; }
 
 private:
+    /// Waits for the next time of the grid, calls the function, applies a new period, waits again.
     void wait();
 
     asio::steady_timer timer_;

@@ -40,6 +40,13 @@ struct HostOptions {
 ///     (*host)->run();  // until stop()
 ///
 /// Threading: one thread makes, runs and destroys it; stop() from any.
+///
+/// Requests on the control port, one line each, which `metier virtual inject` and tests send:
+///
+///     {"inject": "emergency-stop", "value": ""}   ->  {"ok": true}
+///     {"inject": "delay", "value": "50"}          ->  {"ok": true}, all later bytes 50 ms late
+///     {"state": true}                             ->  what Controller::state() gives
+///     {"help": true}                              ->  {NAME: one line of help, ...}
 class Host {
 public:
     /// Makes the controller and opens the control port; run() serves.
@@ -50,6 +57,7 @@ public:
     ~Host();
 
     /// Runs the controller until stop(), on the calling thread.
+    /// Exceptions of handlers leave it; it cannot be run a second time after stop().
     void run() { context_.run(); }
     /// Ends run() soon. Any thread; does not wait.
     void stop() { context_.stop(); }
@@ -69,7 +77,10 @@ public:
 
 private:
     Host() = default;
+    /// Looks every 10 ms whether a peer is still connected; stops the context then or at the
+    /// deadline.
     void awaitSolitude(SteadyTime deadline);
+    /// Injections of the controller, then the faults that every controller has.
     std::vector<InjectionHelp> injections();
 
     asio::io_context context_;

@@ -10,6 +10,10 @@ namespace metier::virtual_controller {
 /// queued, and is called without an error.
 ///
 /// Threading: the thread that runs the io_context.
+///
+///     timer_.async_wait(lifetime_.guard([this](const asio::error_code&) { onTime(); }));
+///
+/// Make it the last member: then it ends first, before anything that a handler could use.
 class Lifetime {
 public:
     Lifetime() = default;
@@ -17,6 +21,8 @@ public:
     Lifetime& operator=(const Lifetime&) = delete;
 
     /// A handler that calls `handler` as long as the object lives.
+    /// Any number of handlers may be guarded. The handler itself is copied or moved into the
+    /// result, and is destroyed with it, also if it was never called.
     template <typename Handler>
     auto guard(Handler handler) const {
         return [alive = std::weak_ptr<const bool>(alive_),

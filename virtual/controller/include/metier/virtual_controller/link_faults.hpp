@@ -10,6 +10,9 @@ namespace metier::virtual_controller {
 /// Faults of the cable of a virtual controller. They apply to every port of it.
 ///
 /// Threading: any thread.
+///
+/// While the cable is cut, sent bytes wait in the queue, 1 MB per peer at most, and go out once it
+/// is plugged in again; further ones are dropped.
 struct LinkFaults {
     /// A pulled cable: nothing is sent, received or accepted, and neither side is notified.
     std::atomic<bool> cut{false};
@@ -20,6 +23,7 @@ struct LinkFaults {
 
     /// Changes a byte of a packet before it is sent, if `garble` asks for it. The place of the byte
     /// goes round: the first one, the middle one, the middle of the halves, of the quarters, ...
+    /// An empty packet uses up no garbled one. One bit pattern, 0x55, is put over the byte.
     void spoil(std::span<std::byte> packet) noexcept;
 
 private:

@@ -20,6 +20,10 @@ public:
     explicit PeerLines(std::size_t longest = 4096) : longest_(longest) {}
 
     /// Calls `take` for each complete line, without its line feed.
+    /// A carriage return before the line feed stays part of the line. Lines that were complete
+    /// before a line that is too long are still handed over. `take` must not destroy this, nor call
+    /// add().
+    /// \param take valid during the call; the line is a view that ends with it
     void add(TcpPeer& peer, std::span<const std::byte> bytes,
              const std::function<void(std::string_view)>& take);
     /// Drops the incomplete line of a peer; call it from on_closed.

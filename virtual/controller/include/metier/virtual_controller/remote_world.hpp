@@ -19,6 +19,9 @@ namespace metier::virtual_controller {
 /// connecting is tried again.
 ///
 /// Threading: created, used and destroyed on the thread that runs the io_context. Nothing waits.
+///
+/// Connecting is tried again every 500 ms, for ever. An error and a line of more than 4096 bytes
+/// end the connection; a line that is no effect is skipped, and the last effect stays.
 class RemoteWorld final : public WorldLink {
 public:
     /// TCP port of the world, unless another one is given.
@@ -28,8 +31,11 @@ public:
     /// \param context must outlive this
     /// \param name    name of this controller in the world's settings
     /// \param address IP address of the world's process
+    /// \param port TCP port of the world's process
+    /// An address that cannot be parsed is not reported here: check it with parseAddress() before.
     RemoteWorld(asio::io_context& context, std::string name, std::string address,
                 std::uint16_t port = kPort);
+    /// Closes the connection; handlers that are still queued do nothing.
     ~RemoteWorld() override;
     RemoteWorld(const RemoteWorld&) = delete;
     RemoteWorld& operator=(const RemoteWorld&) = delete;
@@ -41,6 +47,8 @@ public:
     const WorldEffect& effect() const override { return effect_; }
 
 private:
+    /// Socket and buffers of the connection. They must live until the last operation on them has
+    /// ended, also if the RemoteWorld is gone by then.
     struct Wire {
         Wire(asio::io_context& context, std::size_t longest_line)
             : socket(context), incoming(longest_line) {}
@@ -50,14 +58,20 @@ private:
         std::string outgoing;
     };
 
+    /// Handler that goes on with `then`, or with connectLater() after an error.
     template <typename Then>
     auto orConnectLater(Then then);
+    /// Drops the present connection and whatever was received, and opens a new one.
     void connect();
+    /// The world is gone: there is no effect from now on; the next attempt follows after the pause.
     void connectLater();
+    /// Sends newest_ if there is something new, a connection and no answer outstanding.
     void send();
+    /// Waits for the line that answers the last report, then sends the next one.
     void readEffect();
 
     std::string name_;
+    // All members belong to the thread of the io_context; there is no lock.
     asio::ip::tcp::endpoint endpoint_;
     std::shared_ptr<Wire> wire_;  // shared with its operations, which may end after this
     asio::steady_timer retry_;
@@ -70,6 +84,8 @@ private:
 };
 
 /// A world without objects: nothing is touched, no part is between the jaws.
+///
+/// Threading: as WorldLink; has no connection and no state.
 class EmptyWorld final : public WorldLink {
 public:
     void report(const WorldReport&) override {}

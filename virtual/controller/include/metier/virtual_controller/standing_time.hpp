@@ -19,11 +19,15 @@ public:
     static constexpr double kNoMotion = 1e-4;
 
     /// Takes the position; call it once per cycle.
+    /// A changed number of axes counts as a motion. The first call sets the place and counts as
+    /// none.
     /// \param position true position of each axis [rad]
     /// \param now      time of the cycle, not before that of the last call
     void take(std::span<const double> position, SteadyTime now);
 
     /// Time from the last motion to `now`; zero before the first take().
+    /// While the device moves it is the time since the last cycle that found a change, so about
+    /// zero.
     std::chrono::duration<double> standing(SteadyTime now) const;
     /// Longest time from one cycle to the next since the last begin of a motion: a busy machine
     /// adds up to this to every time measured at this controller.
@@ -33,6 +37,7 @@ public:
     void show(nlohmann::ordered_json& state, SteadyTime now) const;
 
 private:
+    // Position at the last motion: slow drifts add up to kNoMotion and then count as one.
     std::vector<double> place_;
     SteadyTime moved_{};
     SteadyTime last_{};

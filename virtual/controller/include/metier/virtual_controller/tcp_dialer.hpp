@@ -16,6 +16,11 @@ namespace metier::virtual_controller {
 ///
 /// Threading: made, used and destroyed on the thread that runs the io_context, whose handlers are
 /// all called there.
+///
+///     auto dialer = TcpDialer::create(
+///         context, {.from = "127.0.1.1", .to = "127.0.0.1", .port = 50002}, faults,
+///         {.peer = {...}, .on_failed = [&](const Error& error) { ... }});
+///     (*dialer)->dial();
 class TcpDialer {
 public:
     /// Both ends of the connection.
@@ -43,8 +48,10 @@ public:
     virtual ~TcpDialer() = default;
 
     /// Tries to connect once; peer.on_connected or on_failed follows. Fails while the cable is cut.
+    /// Neither function is called from within dial().
     virtual void dial() = 0;
     /// Gives up dialling and resets an open connection.
+    /// peer.on_closed follows for an open connection.
     virtual void reset() = 0;
 };
 

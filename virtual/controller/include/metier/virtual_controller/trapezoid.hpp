@@ -9,8 +9,13 @@ namespace metier::virtual_controller {
 /// caller's: m or rad; time is in s.
 ///
 /// Threading: a value; any thread.
+///
+///     const Trapezoid way(0.5, 1.0, 4.0);        // half a metre, at most 1 m/s and 4 m/s2
+///     const double now = way.at(time);           // 0 to 0.5 m
+///     const bool done = time >= way.duration();
 class Trapezoid {
 public:
+    /// The arguments are not checked: a velocity or an acceleration of 0 has no meaningful result.
     /// \param length       >= 0
     /// \param velocity     largest, > 0; a short length does not reach it
     /// \param acceleration > 0
@@ -27,6 +32,7 @@ public:
     }
 
     /// The distance with other limits: in the given time [s], > 0, a third of it for each part.
+    /// It is not compared with the limits of the original one: a short duration exceeds them.
     Trapezoid lasting(double duration) const {
         Trapezoid other = *this;
         other.duration_ = duration;
@@ -37,6 +43,7 @@ public:
     }
 
     /// Distance from the start; 0 before the begin, `length` after the end.
+    /// Continuous in position and velocity; the acceleration jumps at the ends of the three parts.
     /// \param time [s] since the start
     double at(double time) const {
         const double t = std::clamp(time, 0.0, duration_);
@@ -48,11 +55,16 @@ public:
                             : velocity_ * (t - 0.5 * ramp_);
     }
     /// Time from start to rest [s].
+    /// 0 for a length of 0.
     double duration() const { return duration_; }
     /// Time at which it begins to brake [s].
+    /// A shorter length than the ramps need has no part of constant velocity: it is then half of
+    /// duration().
     double brakingFrom() const { return duration_ - ramp_; }
 
 private:
+    // Velocity and acceleration are those that are really driven: velocity_ is below the given
+    // limit if the length is too short to reach it.
     double length_;
     double velocity_;
     double acceleration_;

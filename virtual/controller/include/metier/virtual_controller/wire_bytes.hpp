@@ -21,8 +21,8 @@ using Bytes = std::vector<std::byte>;
 /// Threading: a value; one thread.
 class ByteWriter {
 public:
-    template <typename T>
     /// Appends one number in the size of its type; a bool as one byte, floating point as IEEE 754.
+    template <typename T>
     requires std::is_arithmetic_v<T> ByteWriter& put(T value) {
         if constexpr (std::same_as<T, bool>) {
             return put(static_cast<std::uint8_t>(value));
@@ -41,6 +41,7 @@ public:
     template <typename Range>
     requires requires(const Range& range) { range.begin(); }
     /// Appends every element of a range, in order.
+    /// Each element is written in the size of its own type; the number of elements is not written.
     ByteWriter& putAll(const Range& values) {
         for (const auto& value : values) {
             put(value);
@@ -48,22 +49,26 @@ public:
         return *this;
     }
     /// Appends the bytes of a text, without an end.
+    /// Neither its length nor a zero byte is added; a protocol that needs one puts it itself.
     ByteWriter& text(std::string_view text) {
         const auto bytes = std::as_bytes(std::span(text));
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
         return *this;
     }
     /// Appends that many zero bytes.
+    /// Place holders for fields that the virtual controller does not fill.
     ByteWriter& zeros(std::size_t count) {
         bytes_.resize(bytes_.size() + count);
         return *this;
     }
     /// Appends bytes as they are.
+    /// For example a package inside another one, whose length must be known first.
     ByteWriter& bytes(std::span<const std::byte> bytes) {
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
         return *this;
     }
     /// All bytes so far; valid until the next call.
+    /// Copy them if they have to outlive this writer.
     const Bytes& content() const { return bytes_; }
 
 private:
@@ -74,12 +79,18 @@ private:
 /// and is noted: test complete() once at the end.
 ///
 /// Threading: a value; one thread. The bytes must outlive it.
+///
+///     ByteReader reader(package);
+///     const auto size = reader.get<std::uint16_t>();
+///     const auto type = reader.get<std::uint8_t>();
+///     if (!reader.complete()) { peer.reset(); }   // the package was too short for its header
 class ByteReader {
 public:
+    /// Begins at the first byte. Copies nothing.
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
-    template <typename T>
     /// Takes the next number, as ByteWriter::put() wrote it.
+    template <typename T>
     requires std::is_arithmetic_v<T> T get() {
         if constexpr (std::same_as<T, bool>) {
             return get<std::uint8_t>() != 0;
@@ -107,10 +118,13 @@ public:
     }
     /// Number of bytes that were not taken yet.
     std::size_t left() const { return bytes_.size(); }
-    /// Reports whether every requested byte was there.
+    /// Reports whether every requested byte was there: false after a get() beyond the end.
+    /// Once false it stays false, and left() is 0 from then on.
     bool complete() const { return complete_; }
 
 private:
+    // The bytes that were not taken; empty after a read beyond the end, so that every later get()
+    // gives zero as well instead of a number from the wrong place.
     std::span<const std::byte> bytes_;
     bool complete_ = true;
 };

@@ -31,6 +31,7 @@ struct WorldReport {
 
 /// The cell around one virtual controller: arms, parts, a table, a wall.
 ///
+/// EmptyWorld and RemoteWorld implement it.
 /// Threading: the thread that runs the controller. Neither function waits.
 class WorldLink {
 public:
@@ -40,6 +41,8 @@ public:
     /// the world answers each report with its effect.
     virtual void report(const WorldReport& report) = 0;
     /// Newest effect, a few milliseconds old.
+    /// The reference is valid as long as the link; its content may change whenever the io_context
+    /// runs.
     virtual const WorldEffect& effect() const = 0;
 };
 
