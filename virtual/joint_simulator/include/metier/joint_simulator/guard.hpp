@@ -10,6 +10,7 @@
 namespace metier::joint_simulator {
 
 /// Limits of one axis in the simulated controller.
+/// The simulator checks them, JointSimulator::create() refuses limits that are none.
 struct AxisLimits {
     /// Lowest position [rad].
     double lower = 0.0;
@@ -32,8 +33,11 @@ struct GuardTolerance {
 };
 
 /// A limit that a set-point broke; without text, so that a cycle thread can make it.
+/// A value: copied between threads, formatted by toText() where memory may be allocated.
 struct Violation {
     /// Quantity that is beyond its limit.
+    /// In the order in which each axis is checked, after the number of axes and whether it is
+    /// finite.
     enum class Quantity : std::uint8_t { position, velocity, acceleration, not_finite, axis_count };
 
     /// The first quantity found.
@@ -55,21 +59,35 @@ std::string toText(const Violation& violation);
 /// with the set-points that it checks.
 ///
 /// Threading: one thread, the cycle. Does not allocate.
+///
+///     Guard guard(limits, {}, 0.008);
+///     guard.reset(start);
+///     if (const auto broken = guard.accept(set_point)) { log(toText(*broken)); }
+///
+/// The first set-point after reset() is checked against an arm that stands still, so a jump there
+/// is too fast as well.
 class Guard {
 public:
     /// Begins at zero, standing still: call reset().
     /// \param limits one per axis
     /// \param cycle  [s], > 0
+    /// \param tolerance amounts that are still accepted; rounding alone needs some
     Guard(std::vector<AxisLimits> limits, GuardTolerance tolerance, double cycle);
 
     /// Takes a set-point [rad], or leaves the guard unchanged and returns the broken limit.
+    /// Axes are checked in order and the first broken limit is returned: position before velocity
+    /// before acceleration.
+    /// \return nothing if the set-point was taken
     std::optional<Violation> accept(const device::JointArray& set_point) noexcept;
 
     /// Brakes each axis by one cycle as hard as its limit allows.
+    /// Position limits are not watched: an arm that brakes too late passes them. Call it once per
+    /// cycle until standing().
     /// \return the position at the end of the cycle
     const device::JointArray& brake() noexcept;
 
     /// Sets the arm at a position, standing still.
+    /// \param position [rad], one value per axis; its limits are not checked
     void reset(const device::JointArray& position) noexcept;
 
     /// Position of the last set-point or cycle of braking [rad].
@@ -77,12 +95,15 @@ public:
     /// Velocity at that time, by the difference over one cycle [rad/s].
     const device::JointArray& velocity() const noexcept { return velocity_; }
     /// Whether no axis moves.
+    /// Exact: every velocity is 0, as it is after enough calls of brake().
     bool standing() const noexcept;
 
 private:
     std::optional<Violation> check(std::size_t axis, double position,
                                    double velocity) const noexcept;
 
+    // position_ and velocity_ are those of the last accepted set-point, and together with it decide
+    // what the next one may be.
     std::vector<AxisLimits> limits_;
     GuardTolerance tolerance_;
     double cycle_;

@@ -16,6 +16,7 @@
 namespace metier::joint_simulator {
 
 /// Properties of a simulated arm.
+/// optionsFor() fills them from a robot's model.
 struct JointSimulatorOptions {
     /// Name of the arm in messages.
     std::string name;
@@ -38,6 +39,7 @@ struct JointSimulatorOptions {
 };
 
 /// State of the emergency stop's button.
+/// The safety state stays emergency_stop after the release, until resetFault().
 enum class EmergencyStop : std::uint8_t { released, pressed };
 
 /// A simulated robot arm: follows set-points with a lag, checks each with its own guard and stops
@@ -57,6 +59,8 @@ enum class EmergencyStop : std::uint8_t { released, pressed };
 /// Threading: as device::Arm; cycle() and dispatch() each from one thread.
 class JointSimulator final : public device::Arm {
 public:
+    /// The arm stands at the start position, its safety state is normal, and time stands still.
+    /// Number of axes: 1 to device::kMaxAxes. The message names axis, value, limit and unit.
     /// Errors: invalid_argument if sizes differ, a limit or the cycle is not positive, or the start
     ///         position is outside the limits.
     static Result<std::unique_ptr<JointSimulator>> create(JointSimulatorOptions options);
@@ -66,18 +70,35 @@ public:
     JointSimulator(const JointSimulator&) = delete;
     JointSimulator& operator=(const JointSimulator&) = delete;
 
+    /// Never changes; valid as long as the arm.
     const device::ArmInfo& info() const noexcept override { return info_; }
+    /// As of the last cycle(). While disconnected, position, velocity and stamp stay those of the
+    /// last cycle before, as a real controller's would; `cycle` counts on.
     device::ArmState state() const noexcept override { return published_.read(); }
+    /// As of the last cycle() or resetFault(), with the reason as a sentence. Any thread; locks for
+    /// a moment.
     device::Safety safety() const override;
+    /// Values that measure() took; empty without a drive.
     const TimeHistogram* cycleJitter() const noexcept override { return &jitter_; }
+    /// The source is asked for its first set-point in the next cycle.
+    /// Errors: those of device::checkNormal(); resource_unavailable (another source moves the arm,
+    ///         or its ended() was not called yet).
     Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
+    /// The source that moves the arm gets EndCause::stopped once the measured arm stands; without a
+    /// source it does nothing.
     void stop() noexcept override;
+    /// Does nothing if the safety state is normal.
+    /// Errors: connection_lost (disconnected), device_fault (button still pressed, or the arm still
+    ///         brakes).
     Result<void> resetFault() override;
+    /// Callbacks run in dispatch(), on its thread.
     device::Registration onSafetyChange(SafetyCallback callback) override {
         return reported_.onChange(std::move(callback));
     }
 
     /// One period of the controller. Neither locks, allocates, logs nor throws.
+    /// Order within it: acts of people, the source's next set-point and its check or braking, the
+    /// lag, the new state, the end of a source.
     /// \param scheduled begin of the cycle by the TimeBase
     /// \param missed    cycles so far that began more than one period late
     /// \return whether dispatch() has something to report
@@ -88,9 +109,12 @@ public:
     }
 
     /// Calls ended() of a released source and the safety callbacks. Not from the cycle thread.
+    /// Safety callbacks come first, then ended(). Allocates; may be called at any time, also if
+    /// there is nothing to report.
     void dispatch();
 
     /// Runs cycle() on a time base of its own, then dispatch(): for tests with time moved by hand.
+    /// Time begins at SteadyTime{} and advances by one period with each call; nothing waits.
     void step();
 
     /// Stops the arm, as its controller would after a collision. This and the next acts of people
@@ -100,14 +124,19 @@ public:
     /// Presses or releases the button; a pressed one stops the arm.
     void emergencyStop(EmergencyStop button) noexcept;
     /// Lets the controller be gone: the safety state is disconnected.
+    /// A source that moves the arm ends with EndCause::disconnected.
     void disconnect() noexcept;
     /// The arm answers again; its safety state is normal if there is no other reason for a stop.
+    /// The arm has braked meanwhile.
     void reconnect() noexcept;
     /// Moves the arm to a position as if somebody pushed it there. Ignored while a source moves it.
+    /// Limits are not checked, and the arm is there at once. Only the newest of several calls
+    /// before a cycle counts. One thread at a time.
     /// \param position [rad], one value per axis
     void moveByHand(const device::JointArray& position) noexcept;
 
 private:
+    /// Source of a stop; decides what safety() says.
     enum class Cause : std::uint8_t { none, violation, external, emergency, disconnected };
     struct StopReason {
         Cause cause = Cause::none;
@@ -116,6 +145,7 @@ private:
 
     explicit JointSimulator(JointSimulatorOptions options);
 
+    // The parts of a cycle, in the order of their calls. All run on the cycle thread.
     void takeRequests() noexcept;
     void takeHandMove() noexcept;
     void enter(device::SafetyState safety, const StopReason& reason) noexcept;
@@ -124,9 +154,12 @@ private:
     void judge(const device::JointArray& set_point) noexcept;
     void endWhenDue() noexcept;
     void end(device::EndCause cause) noexcept;
+    /// Whether each measured axis is slower than standstill_speed_.
     bool measuredStands() const noexcept;
+    /// Whether commanded and measured arm stand, at the same place within 0.0001 rad.
     bool cameToRest() const noexcept;
     void publish(SteadyTime scheduled, std::uint64_t missed) noexcept;
+    /// Calls ended() of the source that was released, once, without the lock.
     void tellEnd();
 
     const device::ArmInfo info_;
@@ -145,6 +178,8 @@ private:
     device::SharedValue<StopReason> reason_;
     std::atomic<device::SafetyState> safety_{device::SafetyState::normal};
     std::atomic<bool> standing_{true};
+    // The source that the cycle asks. owner_ keeps it alive until dispatch() has called its
+    // ended(), so the cycle thread never sees one that is gone.
     std::atomic<device::SetPointSource*> active_{nullptr};
     std::atomic<device::SetPointSource*> stop_target_{nullptr};
     std::atomic<bool> ended_{false};

@@ -13,6 +13,9 @@ namespace metier::joint_simulator {
 ///
 /// Threading: one thread creates and destroys it. It starts two threads of its own: one calls
 ///            cycle(), the other dispatch().
+///
+///     auto arm = JointSimulator::create(optionsFor(model));
+///     SimulatorDrive drive(**arm);  // from now on the arm moves in real time
 class SimulatorDrive {
 public:
     /// Begins at once. The arm must outlive the drive; no other code may call its cycle(),

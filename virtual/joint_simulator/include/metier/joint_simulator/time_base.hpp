@@ -16,6 +16,10 @@ namespace metier::joint_simulator {
 /// arm's own time stands still meanwhile.
 ///
 /// Threading: a value, used by one thread; reads no clock.
+///
+///     TimeBase base(clock.now() + period, period);
+///     ... wait until base.next() ...
+///     arm.cycle(base.begin(clock.now()), base.missed());
 class TimeBase {
 public:
     /// Longest delay that is caught up.
@@ -30,6 +34,7 @@ public:
     SteadyTime next() const noexcept { return next_; }
 
     /// Begins the next cycle at `now`, which is not before next().
+    /// A cycle that begins less than one period late counts as in time.
     /// \return time at which it was due
     SteadyTime begin(SteadyTime now) noexcept {
         if (now - next_ > kLongestCatchUp) {
@@ -46,6 +51,7 @@ public:
     }
 
     /// Number of cycles that were left out or began at least one period late.
+    /// Since the time base was made; never falls.
     std::uint64_t missed() const noexcept { return missed_; }
 
 private:
