@@ -9,11 +9,9 @@
 
 namespace metier::urscript {
 
-// Commands of a script that take effect at once. SI units and radians; tool flange frame unless
-// stated otherwise.
-
 // Commands of a script that take effect at once: Robot::apply() gets them. SI units and radians;
 // tool flange frame unless stated otherwise. Source: URScript manual.
+
 /// `set_payload`: the load at the flange.
 struct SetPayload {
     /// Mass [kg].

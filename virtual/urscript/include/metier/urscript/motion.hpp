@@ -10,10 +10,9 @@ namespace metier::urscript {
 /// Target of a move: a joint position [rad] or a pose of the tool frame in the base frame.
 using Target = std::variant<Vector6, Pose>;
 
-// The motion calls of a script, with the manual's defaults filled in. SI and radians.
-
 // The motion calls of a script, with the manual's defaults filled in. SI and radians. Source:
 // URScript manual.
+
 /// `servoj`: follows a joint position. Lasts `time`.
 struct ServoJ {
     /// Joint position, axis 1 first [rad].
@@ -48,10 +47,14 @@ struct SpeedL {
 struct Move {
     /// Target of the move.
     Target target{};
-    double acceleration =
-        0.0;                ///< movej [rad/s^2], else [m/s^2]; optimove: share of the most, 0 to 1
-    double velocity = 0.0;  ///< movej [rad/s], else [m/s]; optimove: share of the most, 0 to 1
-    double time = 0.0;      ///< [s]; 0: by velocity and acceleration
+    /// Acceleration: movej of the leading axis [rad/s^2], else of the tool [m/s^2]; optimovej and
+    /// optimovel: share of the most, 0 to 1.
+    double acceleration = 0.0;
+    /// Velocity: movej of the leading axis [rad/s], else of the tool [m/s]; optimovej and
+    /// optimovel: share of the most, 0 to 1.
+    double velocity = 0.0;
+    /// Duration [s]; 0: by velocity and acceleration.
+    double time = 0.0;
     /// Radius of the blend into the next move [m]; 0: stops at the target.
     double blend_radius = 0.0;
 };
@@ -66,6 +69,7 @@ struct OptimoveJ : Move {};
 /// `optimovel`: as movel, with shares of the limits.
 struct OptimoveL : Move {};
 /// `movec`: the tool along an arc.
+/// The arc leads from the present place of the tool through `via` to the target.
 struct MoveC : Move {
     /// A place on the arc.
     Target via{};

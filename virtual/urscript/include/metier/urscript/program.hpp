@@ -32,6 +32,7 @@ public:
     ///         not_found for a function, thread or variable without a definition, its name in '',
     ///         invalid_argument for the rest, also wrong argument counts and text beyond the
     ///         limits.
+    /// Nothing runs yet, so a wrong script has no effect.
     static Result<Program> parse(std::string_view text);
 
     /// Name of the program; empty for an anonymous one.

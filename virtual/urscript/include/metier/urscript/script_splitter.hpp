@@ -15,6 +15,7 @@ namespace metier::urscript {
 class ScriptSplitter {
 public:
     /// Takes received bytes and appends each program that is complete now, oldest first.
+    /// Bytes may be cut anywhere; an incomplete program waits for the next call.
     /// Errors: out_of_range if a program grows beyond Program::kMaxText; what was collected is
     ///         dropped, and the splitter begins anew with the next line.
     Result<void> push(std::string_view bytes, std::vector<std::string>& programs);

@@ -28,10 +28,14 @@ class Value;
 
 /// A list with value semantics: a copy is independent of the original. Copies share their elements
 /// until one of them is changed.
+///
+/// Threading: as Value. weight(), characters() and depth() are kept up to date, so that an
+/// interpreter can bound the memory of a script without counting.
 class List {
 public:
     /// An empty list.
     List() = default;
+    /// A list with these elements; the vector is not copied.
     explicit List(std::vector<Value> elements);
 
     /// All elements, in order; valid until the list is changed.
@@ -45,6 +49,7 @@ public:
     /// Depth of nested lists, at least 1: 1 for a list of numbers.
     int depth() const { return depth_; }
     /// Replaces an element; copies of the list keep theirs.
+    /// Copies the elements first if another list shares them; depth() never falls by it.
     /// \param index less than size(), which is not checked
     void set(std::size_t index, Value value);
 
@@ -72,14 +77,17 @@ public:
     Value(const char* value) : data_(std::string(value)) {}  // NOLINT
     Value(List value) : data_(std::move(value)) {}           // NOLINT
     Value(const Pose& value) : data_(value) {}               // NOLINT
-    Value(const Vector6& numbers);                           // NOLINT
+    // A list of six numbers, not a pose.
+    Value(const Vector6& numbers);                                            // NOLINT
     Value(std::vector<Value> elements) : data_(List(std::move(elements))) {}  // NOLINT
 
     /// Content, to be visited.
     const Data& data() const { return data_; }
+    /// Content to be changed; List::set() makes a list independent of its copies.
     Data& data() { return data_; }
-    template <typename T>
     /// Content of that type, or nullptr.
+    /// No conversion: an integer is no double.
+    template <typename T>
     const T* get() const {
         return std::get_if<T>(&data_);
     }
@@ -92,10 +100,13 @@ public:
     /// Whether it is an integer or a floating-point number.
     bool isNumber() const { return get<std::int32_t>() != nullptr || get<double>() != nullptr; }
     /// The number; 0 if the value is no number.
+    /// Integers are converted exactly; a bool is no number.
     double number() const;
     /// "none", "bool", "int", "float", "string", "list" or "pose".
+    /// Valid for ever.
     std::string_view typeName() const;
     /// Text in the form of textmsg, str_cat and to_str: True, 1, 0.5, [1, 2], p[0, 0, 0, 0, 0, 0].
+    /// Floating-point numbers have six significant digits, strings no quotes, none is None.
     std::string text() const;
 
 private:
