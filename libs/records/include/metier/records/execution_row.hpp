@@ -23,6 +23,8 @@ inline constexpr std::string_view kServerLost = "ServerLost";
 /// Any text is accepted: bytes that are not UTF-8 become U+FFFD when it is written; names are cut
 /// after 300 bytes, ids and a reason's text after 2000, JSON after 1,000,000. States and reasons
 /// are the names that OPC UA clients see.
+///
+/// Threading: a value, as all structs here.
 struct ExecutionRow {
     /// Number in the store, from 1; 0: it is not in one yet.
     std::int64_t number = 0;
@@ -70,10 +72,13 @@ struct ExecutionRow {
     std::uint64_t missed_cycles = 0;
 
     /// Whether it has ended.
+    /// A lost one is over as well: its end is the last time that is known of it.
     bool isOver() const noexcept { return ended != UtcTime{}; }
 };
 
 /// A change of an execution's state, sub-state or step.
+///
+/// Names are those of OPC UA: states as in ExecutionRow, sub-states as in skill::SubState.
 struct Transition {
     /// Server's wall clock.
     UtcTime time{};
@@ -85,12 +90,15 @@ struct Transition {
     std::string sub_state{};
     /// Step of a composed skill after it; may be empty.
     std::string step{};
-    /// Reason and its text, as in ExecutionRow.
+    /// Reason, as in ExecutionRow.
     std::string reason{};
+    /// Text for a person, as in ExecutionRow; may be empty.
     std::string reason_text{};
 };
 
 /// A value that a skill published while it ran.
+/// An execution that the skill started on a server is one too: {"started": {id, skill,
+/// server_url}}.
 struct Intermediate {
     /// Server's wall clock.
     UtcTime time{};
@@ -99,13 +107,16 @@ struct Intermediate {
 };
 
 /// End of an execution.
+///
+/// Recorder::end() takes it; each execution has one at most.
 struct Outcome {
     /// Server's wall clock.
     UtcTime time{};
     /// Last state: "Ready" or "Halted".
     std::string state{};
-    /// Reason and its text, as in ExecutionRow.
+    /// Reason, as in ExecutionRow.
     std::string reason{};
+    /// Text for a person, as in ExecutionRow; may be empty.
     std::string reason_text{};
     /// JSON object; empty unless it finished.
     std::string result{};
@@ -122,27 +133,35 @@ public:
     /// No values.
     SampleValues() = default;
     /// Takes the first kMost of `values`.
+    /// Further ones are dropped without a report. The values are copied.
     explicit SampleValues(std::span<const double> values) noexcept
         : size_(static_cast<std::uint8_t>(std::min(values.size(), kMost))) {
         std::copy_n(values.begin(), size_, values_.begin());
     }
 
+    /// Number of values, 0 to kMost.
     std::size_t size() const noexcept { return size_; }
+    /// Whether there are none, as for a quantity that the device does not have.
     bool empty() const noexcept { return size_ == 0; }
     /// Value at that place, from 0; `i` must be less than size(), which is not checked.
     double operator[](std::size_t i) const noexcept { return values_[i]; }
+    /// View of the values; valid as long as this object.
     std::span<const double> values() const noexcept { return {values_.data(), size_}; }
+    /// Compares number and values exactly; places beyond size() do not count.
     friend bool operator==(const SampleValues& a, const SampleValues& b) noexcept {
         return std::equal(a.values().begin(), a.values().end(), b.values().begin(),
                           b.values().end());
     }
 
 private:
+    // Places from size_ on are 0 and never read.
     std::array<double, kMost> values_{};
     std::uint8_t size_ = 0;
 };
 
 /// Positions of the axes at one time. Trivially copyable.
+/// A missing quantity has no values, so that a record of a gripper or an arm without sensor needs
+/// no room for it.
 struct PathSample {
     /// Time since the start of the execution [s].
     double time = 0;

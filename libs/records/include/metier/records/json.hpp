@@ -38,6 +38,7 @@ struct Details {
 Result<Details> detailsOf(Store& store, std::int64_t number);
 /// The object of the execution with `transitions`, `intermediates`, `children` (objects as well)
 /// and `path`: a list of {time, actual, commanded, force}; the last two only where there are any.
+/// Threads: any; pure.
 std::string toJson(const Details& details);
 
 }  // namespace metier::records

@@ -12,14 +12,19 @@ namespace metier::records {
 
 /// Table of the schema that has a member's column: the executions themselves, or one of the two
 /// that keep each repeated text once.
+/// `kinds` has a row for each combination of server, controller, skill, device, user, state and
+/// reason; `notes` has the texts of reasons.
 enum class Table : std::uint8_t { executions, kinds, notes };
 
 /// Kind of a text; it decides after how many bytes the text is cut: name 300, key 2000, json
 /// 1,000,000.
+/// A text is cut between two characters of UTF-8. JSON that was cut can no longer be parsed and is
+/// shown as a text.
 enum class Form : std::uint8_t { name, key, json };
 
 /// Description of a member of Execution or Transition. JSON, SQL, the limits of texts and the
 /// memory that a record takes all use these descriptions.
+/// Texts are literals of this file and valid for ever.
 struct Member {
     /// Name in JSON.
     std::string_view name;
@@ -37,6 +42,13 @@ struct Member {
 /// UtcTime, std::int64_t (the number in the store) or std::uint64_t, const if `execution` is.
 template <typename E, typename Visit>
 requires std::same_as<std::remove_const_t<E>, ExecutionRow>
+/// The order is that of the members in JSON. A new member needs a column in the schema.
+///
+///     visitMembers(row, [&](const Member& member, const auto& value) {
+///         object[std::string(member.name)] = value;
+///     });
+/// \param visit takes every type above, as a generic lambda does; may keep the Member's texts
+/// Threads: any; calls `visit` on the calling one.
 void visitMembers(E& execution, Visit visit) {
     using enum Table;
     const auto column = [](std::string_view name) { return Member{.name = name}; };
@@ -68,6 +80,9 @@ void visitMembers(E& execution, Visit visit) {
 /// The same for a transition.
 template <typename T, typename Visit>
 requires std::same_as<std::remove_const_t<T>, Transition>
+/// A transition has no columns of its own: an event is stored as the list of its members, so their
+/// order and number are the format of stored events. A changed list makes older ones unreadable.
+/// Threads of all: any.
 void visitMembers(T& transition, Visit visit) {
     visit(Member{.name = "time"}, transition.time);
     visit(Member{.name = "from"}, transition.from);
@@ -82,6 +97,7 @@ void visitMembers(T& transition, Visit visit) {
 template <typename T, typename Visit>
 requires std::same_as<std::remove_const_t<T>, Intermediate>
 /// The same for an intermediate result.
+/// `value` is JSON already: a writer of JSON must not quote it again.
 void visitMembers(T& intermediate, Visit visit) {
     visit(Member{.name = "time"}, intermediate.time);
     visit(Member{.name = "value", .form = Form::json}, intermediate.value);

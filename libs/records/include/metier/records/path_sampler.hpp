@@ -21,6 +21,10 @@ namespace metier::records {
 /// Threading: a thread of its own reads the newest state of arm and sensor; no cycle thread waits
 /// for it. begin() and end() may be called on any thread; they wait for at most one reading of that
 /// thread.
+///
+/// A reading counts as a motion if an axis, measured or commanded, differs by more than 0.0001 rad
+/// from the last sample, the force by more than 0.5 N or the torque by more than 0.05 N m. The last
+/// reading of a pause is recorded too, so that a straight line between two samples is true.
 class PathSampler {
 public:
     /// Time between two readings while an execution is under way.
@@ -31,18 +35,23 @@ public:
     /// \param sensor   may be null: samples have no force then
     PathSampler(const device::Arm& arm, const device::ForceTorqueSensor* sensor,
                 Recorder& recorder);
+    /// Ends the thread, within one reading. Executions that are still under way get no further
+    /// sample.
     ~PathSampler();
     PathSampler(const PathSampler&) = delete;
     PathSampler& operator=(const PathSampler&) = delete;
 
     /// Starts recording for an execution; several may be under way.
+    /// Records the first sample at once. A key of 0, of an execution that was dropped, is ignored.
     /// \param key from Recorder::begin()
     void begin(Recorder::Key key);
     /// Stops recording for an execution; no sample of it comes after this.
+    /// Records a last sample if the arm has reported a newer state. An unknown key gives 0.
     /// \return number of cycles that the arm has missed since begin()
     std::uint64_t end(Recorder::Key key);
 
 private:
+    /// State of arm and sensor at one time; no force while the sensor is not in order.
     struct Reading {
         device::ArmState arm;
         std::optional<device::WrenchSample> force{};
@@ -58,8 +67,11 @@ private:
     };
 
     void run(const std::stop_token& stop);
+    /// Copies the newest state that the devices have published.
     Reading read() const;
+    /// Decides whether the reading is a sample of this path, or is skipped. With the lock.
     void take(Path& path, const Reading& reading);
+    /// Hands a sample to the recorder and keeps it for the next comparison. With the lock.
     void send(Path& path, const Reading& reading);
 
     const device::Arm& arm_;

@@ -23,7 +23,9 @@ struct Dropped {
     /// Number of samples of paths.
     std::uint64_t samples = 0;
 
+    /// All kinds together; a dropped execution counts once, whatever belonged to it.
     std::uint64_t sum() const noexcept { return executions + events + samples; }
+    /// Adds each kind.
     Dropped& operator+=(const Dropped& more) noexcept {
         executions += more.executions;
         events += more.events;
@@ -120,10 +122,12 @@ public:
     /// Adds a transition, in the order of their times; the first 100,000 of an execution are kept.
     virtual void transition(Key key, Transition transition) = 0;
     /// Adds a value that the execution published.
+    /// Dropped and counted if the queue is full, as a transition is.
     virtual void intermediate(Key key, Intermediate intermediate) = 0;
     /// Adds a sample of the arm's path.
     virtual void sample(Key key, const PathSample& sample) = 0;
     /// Ends an execution; nothing of it may follow.
+    /// Taken also when the queue is full, so that no recorded execution stays open.
     virtual void end(Key key, Outcome outcome) = 0;
 
     /// Waits until readers see all that was recorded before. For tests and tools, not for servers.

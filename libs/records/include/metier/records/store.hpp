@@ -31,8 +31,10 @@ struct Filter {
     /// Id of the execution that started them.
     std::string parent{};
     /// Time at which or after which they started.
+    /// Included itself.
     std::optional<UtcTime> from{};
     /// Time before which they started.
+    /// Not included itself.
     std::optional<UtcTime> until{};
     /// Part of the reason's text or of a name (server, controller, skill, device, user, state,
     /// reason), in upper or lower case; or the whole id.
@@ -40,6 +42,7 @@ struct Filter {
 };
 
 /// Part of a list.
+/// A count outside 1 to 10,000 is changed to the nearest of these.
 struct Page {
     /// Number of the last execution of the page before; 0: the first page.
     std::int64_t before = 0;
@@ -87,6 +90,7 @@ bool hasPassword(std::string_view url);
 /// invalid_argument (damaged).
 class Store {
 public:
+    /// Purpose for which a store is opened.
     enum class Access {
         /// Changes nothing; a store that does not exist is not_found.
         read,
@@ -105,6 +109,7 @@ public:
     Store& operator=(const Store&) = delete;
 
     /// Finds an execution.
+    /// A text of digits that is the number of no execution is looked for as an id as well.
     /// \param number_or_id a number, or else an id; the newest execution with that id is returned
     /// Errors: not_found.
     Result<ExecutionRow> find(std::string_view number_or_id);
@@ -121,6 +126,7 @@ public:
     /// Samples of the path, in the order of their times; empty for an unknown number.
     Result<std::vector<PathSample>> path(std::int64_t number);
     /// Executions that any server added or changed after `revision`; to be called repeatedly.
+    /// An execution that changed twice since comes once, as it is now.
     /// \param revision that of the last answer; latestRevision() at first. A revision that this
     ///                 store has not reached, as that of a replaced store, gives none
     Result<Changes> changes(std::int64_t revision, const Filter& filter = {},
