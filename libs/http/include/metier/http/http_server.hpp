@@ -19,6 +19,12 @@ class Connection;
 /// read is skipped: it is never taken for another request.
 ///
 /// Set all routes before serve(). Threading: handlers run on the connections' threads.
+///
+///     HttpServer http{HttpLimits{}};
+///     http.Get("/metrics", [&](const auto&, auto& response) { ... });
+///     const auto port = http.serve("127.0.0.1", 0);   // a free one
+///     ...
+///     http.end();
 class HttpServer final : public httplib::Server {
 public:
     /// \param limits for all clients together; nothing is open yet
@@ -33,13 +39,18 @@ public:
     /// Errors: already_exists (the port is taken, or the address is not one of this machine).
     Result<std::uint16_t> serve(const std::string& address, std::uint16_t port);
     /// Ends all connections at once and waits for their threads. Call it once.
+    /// Handlers that are under way are not interrupted: one that waits makes this wait.
     void end();
 
 private:
+    /// Called by httplib for each new connection: on a thread of its own, or, if all threads have a
+    /// connection, on the accepting one, which refuses it.
     bool process_and_close_socket(int socket) override;
+    /// Serves requests until the client closes, breaks a limit, or the server ends.
     void converse(Connection& connection);
     template <typename Self>
     static bool serveOne(Self& self, Connection& connection, bool& closed);
+    /// Answers a connection beyond HttpLimits::connections with 503; does not wait for its peer.
     static void refuse(int socket);
 
     const HttpLimits limits_;
