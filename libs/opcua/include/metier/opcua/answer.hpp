@@ -14,6 +14,11 @@ namespace metier::opcua {
 ///
 /// `status` is the peer's own code where the peer refused, BadTimeout where it did not answer in
 /// time, and otherwise the code that the transport reported.
+///
+///     const auto called = client.call(start);
+///     if (!called && called.error().delivery == Failure::Delivery::unknown) {
+///         // it may have begun: read its state before calling it again
+///     }
 struct Failure : Error {
     /// StatusCode behind the Error.
     StatusCode status = status::kBadUnexpectedError;

@@ -97,7 +97,6 @@ enum class AttributeId : std::uint32_t {
 /// An attribute to read.
 struct ReadItem {
     /// Node of the attribute.
-    /// Node whose references are read.
     NodeId node;
     /// Attribute to read.
     AttributeId attribute = AttributeId::value;
@@ -142,6 +141,7 @@ struct CallResult {
 struct BrowseQuery {
     using Direction = BrowseDirection;
 
+    /// Node whose references are read.
     NodeId node;
     /// Type of the references, with its subtypes; null: all.
     NodeId reference_type = ids::kHierarchicalReferences;

@@ -80,6 +80,7 @@ struct ServerRegistration {
     std::vector<std::string> discovery_urls;
     /// For RegisterServer2 (OPC 10000-12, annex D): "DA", "NA".
     std::vector<std::string> capabilities{"NA"};
+    /// Whether this registers or removes.
     Presence presence = Presence::online;
 };
 

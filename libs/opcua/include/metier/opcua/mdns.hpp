@@ -32,6 +32,8 @@ struct MdnsService {
 /// line is logged.
 /// Threading: a thread of its own talks to Avahi. The destructor waits for it, a fraction of a
 /// second unless D-Bus hangs.
+///
+///     MdnsAnnouncer announcer({.name = "metier arm", .host = "192.168.1.5", .port = 4840});
 class MdnsAnnouncer {
 public:
     /// Begins to announce; does not wait, and nothing can fail.

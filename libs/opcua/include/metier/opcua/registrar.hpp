@@ -50,14 +50,18 @@ public:
                                                    std::chrono::milliseconds timeout)>;
 
     /// Begins to register at once, on its own thread.
+    /// Nothing can fail here: errors of a registration are logged.
     /// \param use empty: opcua::registerServer(), with the security of the options
     explicit Registrar(RegistrarOptions options, Register use = {});
     /// Removes the registration if there is one.
+    /// A discovery server that did not answer last time is not asked: it forgets the server by
+    /// itself.
     ~Registrar();
     Registrar(const Registrar&) = delete;
     Registrar& operator=(const Registrar&) = delete;
 
 private:
+    // Body of the thread, with one attempt, and with the removal at the end.
     void run(const std::stop_token& stop);
     void registerNow();
     void leave();

@@ -37,6 +37,9 @@ enum class EventPublishing {
 };
 
 /// Limits for the clients of a server; a request beyond them is refused or gets less.
+///
+/// A limit of zero is refused by Server::create(). What clients get instead of a refusal is revised
+/// by the server, as OPC 10000-4 allows: intervals, time-outs and sizes of queues.
 struct ServerLimits {
     /// Connections, with or without a SecureChannel yet. When all are taken, one without a Session
     /// is closed for the next.
@@ -70,16 +73,19 @@ struct ServerLimits {
     /// Longest publishing interval that a client gets.
     std::chrono::milliseconds max_publishing_interval{10'000};
     /// Number of publishing intervals that a Subscription waits for its client.
-    std::uint32_t lifetime_count =
-        600;  ///< publishing intervals a Subscription waits for its client
+    /// When it passes, the Subscription is deleted.
+    std::uint32_t lifetime_count = 600;
     /// Publish requests of one session that wait for notifications.
     std::uint32_t publish_requests_per_session = 20;
     /// Sent notifications that a Subscription keeps until they are acknowledged.
     std::uint32_t retransmission_queue = 20;
-    /// Operations in one request.
+    /// Nodes in one Read request; a request with more is refused with BadTooManyOperations.
     std::uint32_t nodes_per_read = 1'000;
+    /// Values in one Write request.
     std::uint32_t nodes_per_write = 200;
+    /// Methods in one Call request.
     std::uint32_t nodes_per_call = 10;
+    /// Nodes in one Browse request.
     std::uint32_t nodes_per_browse = 1'000;
     /// References of a node in one Browse answer; BrowseNext gives the next ones.
     std::uint32_t references_per_node = 1'000;
@@ -93,6 +99,10 @@ struct DiscoveryService {
 };
 
 /// Settings of a Server.
+///
+///     ServerOptions options{.application_name = "cell 3", .port = 0};
+///     options.nodesets = {"metier", "universal_robots"};
+///     options.security = ServerSecurity{...};  // without it only this machine can connect
 struct ServerOptions {
     /// Name for people.
     std::string application_name = "metier";
@@ -128,6 +138,7 @@ struct ServerOptions {
 };
 
 /// Figures of a server's load; at most 100 ms old while its thread works.
+/// All but waiting_work are zero before start().
 struct ServerStatistics {
     /// Open connections, with or without a session.
     std::size_t connections = 0;
@@ -145,6 +156,7 @@ struct ServerStatistics {
 
 /// A timer that is cancelled at the end of its life.
 ///
+/// Keep it: a handle that is dropped cancels its timer at once.
 /// Threading: the server's thread. May outlive the Server.
 class TimerHandle {
 public:
@@ -152,7 +164,9 @@ public:
     TimerHandle() = default;
     explicit TimerHandle(std::function<void()> cancel) : cancel_(std::move(cancel)) {}
     ~TimerHandle() { cancel(); }
+    /// The moved-from handle has no timer.
     TimerHandle(TimerHandle&& other) noexcept : cancel_(std::exchange(other.cancel_, nullptr)) {}
+    /// Cancels the timer that this handle had before.
     TimerHandle& operator=(TimerHandle&& other) noexcept;
     /// Cancels the timer. Does nothing if it has run or was cancelled before.
     void cancel() noexcept;
@@ -161,6 +175,7 @@ private:
     std::function<void()> cancel_;
 };
 
+/// Wraps a type into a Result once: Result<T> stays Result<T>.
 template <typename T>
 struct AsResult {
     using Type = Result<T>;
@@ -182,13 +197,18 @@ using ResultOf = typename AsResult<std::invoke_result_t<Work&>>::Type;
 /// Threading: between start() and stop() one thread of its own does all work and calls all
 /// handlers. Before and after that, the thread that created it takes its place. Each function says
 /// which thread may call it.
+///
+/// A complete exchange with the server's thread, from any other one:
+///
+///     const auto value = server.call([&] { return server.nodes().read(id); });
+///     server.post([&server, id] { static_cast<void>(server.nodes().write(id, Value::of(1.0))); });
 class Server {
 public:
     /// Makes the server and loads its NodeSets, which waits for the disk; nothing is open yet.
     /// Errors: invalid_argument (an address that is not loopback, a limit of zero, a certificate
     ///         for another ApplicationUri; with a line "file:line: why" for each mistake in a
-    ///         NodeSet file), resource_unavailable (the trust folder), not_found (NodeSet), internal
-    ///         (the stack).
+    ///         NodeSet file), resource_unavailable (the trust folder), not_found (NodeSet),
+    ///         internal (the stack).
     static Result<std::unique_ptr<Server>> create(ServerOptions options);
     /// Stops it.
     ~Server();
@@ -196,10 +216,12 @@ public:
     Server& operator=(const Server&) = delete;
 
     /// Opens the port and serves clients. Creating thread; once.
+    /// Returns once the port is open. After an error the server has been stopped; make a new one.
     /// Errors: already_exists (the port is taken), invalid_state (started before).
     Result<> start();
     /// Closes all sessions and ends the server's thread. Work posted and not begun is dropped.
     /// Creating thread; may be called again.
+    /// Waits for the work that runs; onSessionClosed() is called for each session.
     void stop();
 
     /// `opc.tcp://127.0.0.1:<port>` with the real port; empty before start(). Any thread.
@@ -209,6 +231,8 @@ public:
 
     /// Runs work on the server's thread, in the order of posting. Any thread; does not wait.
     /// Work posted before start() runs after it. An exception is logged and goes no further.
+    /// Work posted after stop() is dropped. Everything that it captures must live until it has run
+    /// or was dropped; it may be destroyed on the thread that calls stop().
     void post(std::function<void()> work);
 
     /// Runs work on the server's thread and waits for its result, R or Result<R>. Any thread but a
@@ -224,14 +248,17 @@ public:
 
     /// Calls the handler when a session has ended: closed, timed out or ended by stop(). Handlers
     /// run on the server's thread and stay for the server's life. Server's thread.
+    /// Handlers are called in the order of these calls.
     void onSessionClosed(std::function<void(const Session&)> handler);
 
     /// The nodes of this server. Server's thread.
+    /// Valid as long as the Server.
     AddressSpace& nodes();
     /// Records an action of the server itself, as an audit event and for on_audit. Server's thread.
     void audit(const OwnAct& act);
 
     /// Closes the sessions for which `which` returns true. Server's thread.
+    /// onSessionClosed() is called for each.
     void closeSessions(const std::function<bool(const Session&)>& which);
 
     /// Replaces certificate and key, for the same ApplicationUri. Open connections stay until their
@@ -241,11 +268,14 @@ public:
     Result<> renewIdentity(const security::Identity& identity);
 
     /// Time at which the server's thread last worked; it does at least every 100 ms. Any thread.
+    /// If it is older, the thread hangs in some work, or the machine is overloaded: a server gives
+    /// this to its device::Watchdog.
     SteadyTime lastTick() const noexcept;
     /// Whether the caller runs on the server's thread; before start() and after stop() the creating
     /// one counts. Any thread.
     bool onServerThread() const noexcept;
     /// Any thread; does not wait for the server's.
+    /// Present figures.
     ServerStatistics statistics() const;
     /// Times from raising an event to handing it to the socket, one per Subscription that is
     /// notified at once. Any thread.
@@ -258,6 +288,7 @@ private:
     std::unique_ptr<ServerCore> core_;
 };
 
+/// Runs the work; a std::exception becomes internal with its text. Used by Server::call().
 template <typename Work>
 ResultOf<Work> runAsResult(Work& work) {
     try {
@@ -272,6 +303,7 @@ ResultOf<Work> runAsResult(Work& work) {
     }
 }
 
+// On the server's own thread it would wait for itself: the work runs at once there.
 template <typename Work>
 ResultOf<Work> Server::call(Work work, std::chrono::milliseconds deadline) {
     if (onServerThread()) {

@@ -9,6 +9,7 @@ namespace metier::opcua {
 
 /// A client's session as the server knows it. All text came from the client and is unchecked,
 /// except the user name and the thumbprint. The null id stands for the server itself.
+/// A value: a copy does not change when the session does.
 struct Session {
     /// Id of the session; unique while it lasts.
     NodeId id;
@@ -33,6 +34,7 @@ constexpr bool mayCommand(security::Role role) noexcept {
 }
 
 /// Whether a role may read audit events, that is the actions of others.
+/// Threads: any; pure.
 constexpr bool mayAudit(security::Role role) noexcept {
     return role == security::Role::engineer || role == security::Role::security_admin;
 }

@@ -11,10 +11,14 @@ namespace metier::opcua {
 /// The 32-bit outcome of an OPC UA service or operation (OPC 10000-4, 7.39).
 ///
 /// Threading: a value type.
+///
+///     if (code == status::kBadLocked) { waitForOwner(); }
+///     log("refused: {}", code.name());  // BadLocked
 class StatusCode {
 public:
     /// Good.
     constexpr StatusCode() = default;
+    /// \param value code of OPC 10000-6, A.2, with or without info bits
     explicit constexpr StatusCode(std::uint32_t value) : value_(value) {}
 
     /// All 32 bits, info bits such as Overflow included.
@@ -26,6 +30,7 @@ public:
     /// Symbol of the standard, `BadOutOfRange`; for an unknown code its hexadecimal value.
     std::string name() const;
 
+    /// Compares all 32 bits: a code with info bits differs from the plain one.
     friend constexpr bool operator==(StatusCode, StatusCode) = default;
     friend constexpr auto operator<=>(StatusCode, StatusCode) = default;
 
