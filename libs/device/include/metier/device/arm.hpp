@@ -100,6 +100,12 @@ enum class EndCause : std::uint8_t {
 
 /// Source of an arm's motion: gives one set-point per cycle for as long as it is attached, from
 /// Arm::attach() to ended().
+///
+///     class Hold final : public SetPointSource {
+///         Next next(const ArmState&, JointArray&) noexcept override { return Next::set_point; }
+///         void ended(EndCause, const Safety&) override { over_.set_value(); }
+///         std::promise<void> over_;
+///     };
 class SetPointSource {
 public:
     /// Answer of next().
@@ -182,6 +188,7 @@ public:
     virtual ArmState state() const noexcept = 0;
 
     /// The newest safety state with its reason.
+    /// May lock: for a cycle thread ArmState::safety is there.
     virtual Safety safety() const = 0;
 
     /// Histogram of |time from one cycle to the next - period| [s]; nullptr: not measured.

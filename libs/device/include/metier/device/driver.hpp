@@ -18,6 +18,7 @@ namespace metier::device {
 
 /// Device that a driver has opened. The pointers are valid as long as `owner`, whose end closes the
 /// connection; nullptr: the device has no such interface.
+/// Made by Driver::open. A copy shares the device with the original.
 struct OpenDevice {
     std::shared_ptr<void> owner;  // shared by the users of several interfaces of one device
     /// Interfaces of the device; an arm may have all of them.

@@ -19,6 +19,7 @@ struct ForceCondition {
 };
 
 /// Observer of the arm while its controller moves it.
+/// One observer may be used for several motions, one after the other.
 class MotionObserver {
 public:
     virtual ~MotionObserver() = default;
@@ -28,6 +29,7 @@ public:
 };
 
 /// A motion for the controller's own planner, with the same kinds of paths as metier's planner.
+/// A value that is copied by move(); `observer` alone is shared.
 struct ControllerPlannedMotion {
     /// Shape of the path.
     enum class Path : std::uint8_t {
@@ -93,6 +95,7 @@ public:
     ///         out of reach). `done` is not called then.
     virtual Result<void> move(const ControllerPlannedMotion& motion, Done done) = 0;
     /// Brakes on the path; the motion ends as `stopped`. Does nothing if no motion runs.
+    /// Does not wait; `done` follows at standstill.
     virtual void stopMotion() noexcept = 0;
 };
 

@@ -31,6 +31,8 @@ public:
     void signal() noexcept;
 
 private:
+    /// Sleeps until a signal, clears it, calls the handler; the order makes sure that a signal
+    /// during the handler is not lost.
     void run();
 
     std::function<void()> handler_;

@@ -10,6 +10,8 @@
 
 namespace metier::device {
 
+/// A reset of a device on its way from any thread to the driver's own thread, and its outcome on
+/// the way back. One reset at a time; callers do not wait for it but ask again.
 ///
 /// Threading: ask() and underWay() from any thread; taken() and answer() from the driver's own
 /// thread, which does the reset.
@@ -20,6 +22,9 @@ public:
     /// state. Locks, does not wait.
     /// \return nothing while a reset is under way, which began with this call or before: ask again
     /// later
+    ///
+    ///     if (const auto outcome = slot.ask()) { return *outcome; }
+    ///     return fail(Errc::timeout, "the reset goes on: ask again");
     std::optional<Result<void>> ask();
     /// Reports whether a requested reset has not ended yet. Locks.
     bool underWay() const;
@@ -32,6 +37,7 @@ public:
     void answer(Result<void> outcome);
 
 private:
+    // wanted_ is for the resetting thread, under_way_ for the callers: it stays until answer().
     std::atomic<bool> wanted_{false};
     mutable std::mutex mutex_;
     bool under_way_ = false;

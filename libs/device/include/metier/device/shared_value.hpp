@@ -8,21 +8,23 @@
 
 namespace metier::device {
 
-/// Hands the newest value from one thread to any number of readers.
-///
-/// Threading: one writer thread, which never waits, so a cycle thread may write. A reader that
-/// meets a write reads again until it has a whole value. No call locks or allocates.
-template <typename T>
 /// Hands the newest value from one thread to any number of readers, such as an arm's state from its
 /// cycle thread. For one reader only, LatestValue needs no second attempt.
 ///
 /// Threading: one writer thread, which never waits, so a cycle thread may write. A reader that
 /// meets a write reads again until it has a whole value. No call locks or allocates.
+///
+///     SharedValue<ArmState> published;
+///     published.write(state);                   // cycle thread, once per cycle
+///     const ArmState now = published.read();    // any thread: of one cycle, never mixed
+template <typename T>
 class SharedValue {
     static_assert(std::is_trivially_copyable_v<T>, "copied between threads word by word");
 
 public:
     /// Begins with `initial`, which read() returns until the first write().
+    /// T needs no locking, since it is copied word by word; large values make a second attempt
+    /// likelier.
     explicit SharedValue(const T& initial = T{}) noexcept { write(initial); }
 
     /// Publishes a value. Writer only; two writers at a time would mix their values.
@@ -38,6 +40,8 @@ public:
     }
 
     /// The newest published value, whole. Any thread.
+    /// Several calls may give the same value; one after the other they never go back to an older
+    /// one.
     T read() const noexcept {
         std::array<std::uint64_t, kWords> words{};
         std::uint64_t before = 0;
@@ -55,6 +59,8 @@ public:
     }
 
 private:
+    // A sequence lock: version_ is odd while words_ change and rises by two per write; a reader
+    // takes only words between two equal, even versions.
     static constexpr std::size_t kWords = (sizeof(T) + 7) / 8;
 
     std::array<std::atomic<std::uint64_t>, kWords> words_{};
