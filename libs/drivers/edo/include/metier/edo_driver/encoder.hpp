@@ -11,11 +11,8 @@ namespace metier::edo_driver {
 
 // Encoders of the JSON texts for the rosbridge server. Fields that older software does not know are
 // left out: missing fields keep their defaults, an unknown one would make the server drop the whole
-// message.
-
-// Encoders of the JSON texts for the rosbridge server. Fields that older software does not know are
-// left out: missing fields keep their defaults, an unknown one would make the server drop the whole
 // message. Threads: any; pure; all but SetPointText allocate. Source: docs/protocols/edo.md.
+
 /// Announces a topic before its first message; `type` as "edo_core_msgs/JointInit".
 std::string advertiseText(std::string_view topic, std::string_view type);
 /// Subscribes to every message, sent as soon as it exists: no throttle, no fragments, no

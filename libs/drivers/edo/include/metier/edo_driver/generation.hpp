@@ -7,6 +7,7 @@
 namespace metier::edo_driver {
 
 /// Way in which set-points reach the joints; it changed between versions of the robot's software.
+/// A value: the numbers are those of the services and topics of that software.
 struct Generation {
     /// Message that carries set-points.
     enum class Kind : std::uint8_t {
@@ -28,6 +29,7 @@ struct Generation {
     /// Whether that value shows that control is taken.
     bool isTaken(int algorithm_state) const noexcept { return algorithm_state == taken_state; }
     /// Topic of set-points.
+    /// "/algo_jnt_ctrl" or "/external_control"; valid for ever, as is the type.
     std::string_view setPointTopic() const noexcept;
     /// ROS type of their messages.
     std::string_view setPointType() const noexcept;

@@ -26,6 +26,7 @@ struct JointLayout {
     /// Number of joints, 1 to kMaxJoints.
     std::size_t count() const noexcept { return axes + (gripper ? 1 : 0); }
     /// Joint mask of the messages: one bit per joint.
+    /// Bit 0 is axis 1.
     std::uint64_t mask() const noexcept { return (std::uint64_t{1} << count()) - 1; }
     /// Whether that joint, counted from 0, is the gripper.
     bool isGripper(std::size_t joint) const noexcept { return gripper && joint == axes; }
@@ -45,6 +46,7 @@ struct JointSample {
 };
 
 /// All joints, once per cycle of the robot (100 Hz).
+/// Compare `count` with JointLayout::count() before use.
 struct JointStates {
     /// Number of joints that the robot sent.
     std::size_t count = 0;
