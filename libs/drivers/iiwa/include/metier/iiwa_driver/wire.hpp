@@ -66,6 +66,7 @@ public:
     /// Length of the longest command [byte]: eight numbers of 8 byte.
     static constexpr std::size_t kLongest = 64;
 
+    /// Bytes as they are sent; valid as long as this.
     std::span<const std::byte> bytes() const noexcept { return {bytes_.data(), size_}; }
 
 private:
@@ -114,6 +115,7 @@ struct CabinetState {
 
 /// Reason why a state cannot be used.
 struct StateError {
+    /// Check that the state did not pass; decides what `element` and `value` are.
     enum class Kind : std::uint8_t {
         /// The state has `value` bytes instead of stateSize().
         size,
