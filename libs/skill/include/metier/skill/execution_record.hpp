@@ -17,6 +17,7 @@
 namespace metier::skill {
 
 /// Facts that a server keeps of one execution.
+/// A value: a copy does not change when the execution goes on.
 struct ExecutionRecord {
     /// ExecutionId, given by the client, or made by the Program as its random prefix and a number.
     std::string id{};
@@ -50,6 +51,7 @@ public:
     static constexpr std::size_t kMost = 64;
 
     /// The record of that id, or nullptr. Valid until the next add().
+    /// \param id compared with upper and lower case
     const ExecutionRecord* find(std::string_view id) const noexcept {
         const auto found = std::find_if(records_.begin(), records_.end(),
                                         [&](const auto& record) { return record.id == id; });

@@ -10,6 +10,8 @@ namespace metier::skill {
 /// the object that the work uses.
 ///
 /// Threading: the owner's thread.
+///
+///     timer_ = executor.after(100ms, [this] { look(); });  // cancels the one before
 class Timer {
 public:
     /// A Timer without work: cancel() does nothing.
@@ -18,7 +20,9 @@ public:
     explicit Timer(std::function<void()> cancel) : cancel_(std::move(cancel)) {}
     /// Cancels the work, unless it has begun.
     ~Timer() { cancel(); }
+    /// The moved-from Timer has no work.
     Timer(Timer&& other) noexcept : cancel_(std::exchange(other.cancel_, nullptr)) {}
+    /// Cancels the work that this Timer had before.
     Timer& operator=(Timer&& other) noexcept {
         if (this != &other) {
             cancel();

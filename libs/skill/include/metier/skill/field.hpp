@@ -20,6 +20,7 @@
 namespace metier::skill {
 
 /// A unit of measure, as OPC UA's EngineeringUnits show it to clients (OPC 10000-8).
+/// Texts are literals, valid for ever.
 struct Unit {
     /// Symbol as printed behind a number: "m/s".
     std::string_view symbol;
@@ -33,14 +34,21 @@ struct Unit {
 /// A number without unit; the default of a field.
 inline constexpr Unit kOne{"", "one", "C62"};
 // Units of fields; all values are in SI units and radians, never in millimetres or degrees.
+/// Length.
 inline constexpr Unit kMetre{"m", "metre", "MTR"};
+/// Angle; also joint positions of revolute axes.
 inline constexpr Unit kRadian{"rad", "radian", "C81"};
 inline constexpr Unit kSecond{"s", "second", "SEC"};
 inline constexpr Unit kNewton{"N", "newton", "NEW"};
+/// Torque.
 inline constexpr Unit kNewtonMetre{"N m", "newton metre", "NU"};
+/// Velocity of a tool frame, or of a gripper's jaws.
 inline constexpr Unit kMetrePerSecond{"m/s", "metre per second", "MTS"};
+/// Velocity of a joint.
 inline constexpr Unit kRadianPerSecond{"rad/s", "radian per second", "2A"};
+/// Acceleration of a tool frame.
 inline constexpr Unit kMetrePerSecondSquared{"m/s²", "metre per second squared", "MSK"};
+/// Acceleration of a joint.
 inline constexpr Unit kRadianPerSecondSquared{"rad/s²", "radian per second squared", "2B"};
 inline constexpr Unit kKilogram{"kg", "kilogram", "KGM"};
 
@@ -85,6 +93,16 @@ struct LengthLimit {
 
 /// Description of one parameter or result of a skill: its name and the values that it may hold.
 /// Usually declared by FieldList::add().
+///
+///     Field{.name = "Velocity",
+///           .description = "Largest velocity of the tool frame",
+///           .type = ValueType::number,
+///           .unit = kMetrePerSecond,
+///           .range = Range{0.001, 2.0},
+///           .default_value = 0.25}
+///
+/// A value is checked for its type, then for range and length, then by extra_check; the first
+/// failure is reported.
 struct Field {
     /// BrowseName of its Variable, unique within the parameters and within the results of a skill.
     std::string name{};
@@ -126,11 +144,14 @@ public:
     Fields() = default;
     /// A list in the given order; names are not compared here, a Program refuses doubles.
     Fields(std::initializer_list<Field> fields) : Fields(std::vector<Field>(fields)) {}
+    /// A list with the elements of a vector; copies of it share them.
     Fields(std::vector<Field> fields)  // NOLINT: implicit, as a list of fields is meant
         : fields_(std::make_shared<const std::vector<Field>>(std::move(fields))) {}
 
+    /// Iterators in the order of the list; valid as long as one copy of it.
     const_iterator begin() const noexcept { return fields_->begin(); }
     const_iterator end() const noexcept { return fields_->end(); }
+    /// Number of fields.
     std::size_t size() const noexcept { return fields_->size(); }
     bool empty() const noexcept { return fields_->empty(); }
     /// The field at that place, counted from 0; `index` must be less than size(), which is not
@@ -146,16 +167,16 @@ public:
     }
 
 private:
+    // Never null. Shared by all copies; nobody changes it.
     std::shared_ptr<const std::vector<Field>> fields_ =
         std::make_shared<const std::vector<Field>>();
 };
 
-/// The field of that name in a list of fields, or nullptr.
-template <typename List>
 /// The field of that name in a list of fields, or nullptr. Valid as long as the list is not
 /// changed.
 /// \param name compared with upper and lower case
 /// Threads: any; pure.
+template <typename List>
 const Field* findField(const List& fields, std::string_view name) noexcept {
     const auto found = std::find_if(fields.begin(), fields.end(),
                                     [&](const Field& field) { return field.name == name; });

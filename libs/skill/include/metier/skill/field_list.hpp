@@ -13,8 +13,9 @@ namespace metier::skill {
 
 namespace detail {
 
-template <typename T>
 /// Type of a member without its std::optional, and whether it had one.
+/// For a member without it, Null without a default is an error.
+template <typename T>
 struct StripOptional {
     using Type = T;
     static constexpr bool kOptional = false;
@@ -28,13 +29,6 @@ struct StripOptional<std::optional<T>> {
 }  // namespace detail
 
 /// Declares the parameters or results of a skill once, as members of a plain struct:
-/// `FieldList<Grasp>().add(&Grasp::force, {.name = "Force", .unit = kNewton, .default_value
-/// = 20.0})`.
-///
-/// A member is one of Value's types, or std::optional of one for a field that may stay Null.
-/// Threading: read-only use from any thread.
-template <typename T>
-/// Declares the parameters or results of a skill once, as members of a plain struct:
 ///
 ///     const auto fields = FieldList<Grasp>().add(
 ///         &Grasp::force, {.name = "Force", .unit = kNewton, .default_value = 20.0});
@@ -42,15 +36,17 @@ template <typename T>
 ///
 /// A member is one of Value's types, or std::optional of one for a field that may stay Null.
 /// Threading: read-only use from any thread.
+template <typename T>
 class FieldList {
 public:
-    /// Declares the next field; its type follows from the member.
-    template <typename Member>
     /// Declares the next field.
+    /// Fields appear to clients in this order.
+    /// Defaults and ranges are checked when a Program is made of the skill, not here.
     /// \param member must be of one of Value's types, or std::optional of one; else it does not
     ///               compile
     /// \param field  type and optional are overwritten: they follow from the member
     /// \return this list, for the next add()
+    template <typename Member>
     FieldList& add(Member T::*member, Field field) {
         using Plain = typename detail::StripOptional<Member>::Type;
         field.type = typeOf(Value(std::in_place_type<Plain>));
@@ -69,6 +65,8 @@ public:
     /// Makes the struct from `values`. A name that is missing, or Null, means the default; names
     /// that are not declared are ignored. A member whose value stays Null keeps the struct's own
     /// initial value.
+    /// Stops at the first field that is wrong, in the order of add(). Each check runs again, so
+    /// that values may come from anywhere, not from a Program alone.
     /// Errors: as checkValue(); invalid_argument if a value without default is missing.
     Result<T> read(const ValueMap& values) const {
         T target{};
@@ -85,6 +83,7 @@ public:
     }
 
     /// Returns the members by name, without checks; an empty optional gives Null.
+    /// Each declared field has an entry, so the result of a skill is complete.
     ValueMap write(const T& source) const {
         ValueMap values;
         for (std::size_t i = 0; i < fields_.size(); ++i) {
@@ -94,6 +93,8 @@ public:
     }
 
 private:
+    /// Setter and getter of one member; accessors_ and fields_ have the same order. `set` expects
+    /// the type that checkValue() has made sure of.
     struct Accessor {
         std::function<void(T&, const Value&)> set;
         std::function<Value(const T&)> get;

@@ -8,12 +8,9 @@
 namespace metier::skill {
 
 // Values of parameters and results as JSON: frames are {"x", "y", "z", "a", "b", "c"}, vectors
-// {"x", "y", "z"}, ranges {"low", "high"}; Null is null; units are those of the field. Threads:
-// any; pure.
-
-// Values of parameters and results as JSON: frames are {"x", "y", "z", "a", "b", "c"}, vectors
 // {"x", "y", "z"}, ranges {"low", "high"}; Null is null; units are those of the field. valueFrom()
 // of values.hpp reads them back. Threads: any; pure.
+
 /// One value. Members of an object come in the order of the alphabet.
 nlohmann::json toJson(const Value& value);
 /// An object with a member for each value.

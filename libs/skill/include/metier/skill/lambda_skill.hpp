@@ -41,14 +41,32 @@ struct SkillFunctions {
 ///                  .halt = [&](const ExecutionHandle& on) { hand.stop(); on.atRest(); }});
 ///
 /// The work refers to the functions of this skill, so it must not outlive it. Threading: as Skill.
+///
+/// A complete skill that reports its end from another thread, with a parameter and a result:
+///
+///     LambdaSkill wave(
+///         {.name = "WaveSkill",
+///          .type = "WaveSkillType",
+///          .parameters = {{.name = "Height", .type = ValueType::number, .unit = kMetre,
+///                          .default_value = 0.3}},
+///          .results = {{.name = "Waves", .type = ValueType::uint32,
+///                       .place = Place::final_result}}},
+///         {.start = [&](const ValueMap& values, const ExecutionHandle& on) {
+///             hand.wave(std::get<double>(values.at("Height")), [on](std::uint32_t waves) {
+///                 on.finish({{"Waves", waves}});
+///             });
+///         }});
 class LambdaSkill final : public Skill {
 public:
     /// \param description its `suspendable` is overwritten: true if both suspend and resume are
     ///                    given
     LambdaSkill(SkillDescription description, SkillFunctions functions);
 
+    /// As given, with `suspendable` set.
     const SkillDescription& description() const override { return description_; }
+    /// Calls `check`; the work keeps a copy of the values for `start`.
     Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& snapshot) override;
+    /// Calls `reset`; success without one.
     Result<void> reset() override;
 
 private:

@@ -25,6 +25,8 @@
 namespace metier::skill {
 
 /// Settings of a Program; the defaults suit a skill without device and owner.
+///
+/// The deadlines are timers of the Executor: a busy owner's thread delays them.
 struct ProgramOptions {
     /// The device that the skill needs for itself; empty: none. Shared by the Programs of a device:
     /// while one holds it, a Start of the others is resource_unavailable.
@@ -48,6 +50,11 @@ struct ProgramOptions {
 };
 
 /// A Start that carries its parameters with it: the arguments of the Method StartWith.
+///
+///     const auto id = program.startWith(caller, {.execution_id = "order-17",
+///                                                .parameters = {{"Height", 0.3}},
+///                                                .on_owner_loss = OwnerLossAction::halt});
+///     // A repeated call with the same id starts nothing and returns the id again.
 struct StartRequest {
     /// Name of the execution, at most 128 bytes; empty: the Program makes one.
     std::string execution_id{};
@@ -73,6 +80,8 @@ struct StartRequest {
 /// running work return at once, and the transition follows when the work is at rest. What an
 /// execution reports, and a loss of owner or device, is handled right after the call that is under
 /// way.
+/// Notifications of one transition come in this order: onSubState(), onDiagnostic(),
+/// onTransition(). Observers see the new state in all of them.
 /// Errors of every method: invalid_state if the current state does not allow it, or from inside a
 /// notification; locked if another session has control (Halt excepted). Nothing changes then. An
 /// exception of the skill or its work counts as an error of code internal.
@@ -226,6 +235,8 @@ private:
     };
 
     // Reports of the execution's handles.
+    // They come from any thread and are posted to the owner's; a report of an execution that is
+    // over is dropped.
     void finish(ValueMap result);
     void fail(Reason reason, std::string text);
     void takeRest(std::uint32_t stop_request);
@@ -301,6 +312,7 @@ private:
     void endConfiguration();
     void releaseParameters();
 
+    // The one place where state_ changes; everything that clients see of a transition is set here.
     void commit(TransitionNumber transition, Cause cause);
     void setSubState(SubState sub_state);
 
@@ -311,8 +323,10 @@ private:
     // Shared by the Programs of its thread.
     std::shared_ptr<Executor> executor_;
     const Clock& clock_;
+    // Not owned; in the order of attach().
     std::vector<ProgramObserver*> observers_;
     ParameterSet parameters_;
+    // An entry for every declared result, Null before the first execution that finished.
     ValueMap final_result_;
     Diagnostic diagnostic_;
 

@@ -12,6 +12,11 @@ namespace metier::skill {
 /// Give the same one to the ProgramOptions of all skills of the device.
 ///
 /// Threading: the owner's thread, which all its Programs share.
+///
+///     auto arm = std::make_shared<Resource>("arm ur5");
+///     Program move({.resource = arm}, std::move(move_skill), executor, clock);
+///     Program push({.resource = arm}, std::move(push_skill), executor, clock);
+///     // While `move` is Running or Suspended, a Start of `push` is resource_unavailable.
 class Resource {
 public:
     /// \param name for messages: "arm ur5"
@@ -33,12 +38,14 @@ public:
     }
     /// Takes the device for the skill of that BrowseName.
     /// Errors: resource_unavailable if it is held, even by `holder` itself.
+    /// \param holder BrowseName of the skill, not empty: an empty one would leave it free
     Result<void> acquire(std::string_view holder) {
         METIER_TRY(checkFree());
         holder_ = holder;
         return {};
     }
     /// Frees the device, whoever holds it; nothing happens if it is free.
+    /// Only its holder should call it: nothing checks that.
     void release() noexcept { holder_.clear(); }
 
 private:

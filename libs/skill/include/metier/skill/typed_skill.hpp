@@ -8,8 +8,6 @@
 
 namespace metier::skill {
 
-/// A skill whose parameters and results are plain structs; derive from it and override plan().
-template <typename Parameters, typename Results>
 /// A skill whose parameters and results are plain structs; derive from it and override plan():
 ///
 ///     struct Grasp { double force = 20.0; };
@@ -17,6 +15,22 @@ template <typename Parameters, typename Results>
 ///     class GraspSkill final : public TypedSkill<Grasp, Grasped> { ... };
 ///
 /// Threading: as Skill.
+///
+/// A skill that closes a gripper, with a parameter and a result:
+///
+///     class GraspSkill final : public TypedSkill<Grasp, Grasped> {
+///     public:
+///         explicit GraspSkill(device::Gripper& gripper)
+///             : TypedSkill({.name = "GraspSkill", .type = "GraspSkillType"},
+///                          FieldList<Grasp>().add(&Grasp::force, {.name = "Force"}),
+///                          FieldList<Grasped>().add(&Grasped::width, {.name = "Width"})),
+///               gripper_(gripper) {}
+///
+///     private:
+///         Result<std::unique_ptr<ExecutionWork>> plan(const Grasp& grasp) override;
+///         device::Gripper& gripper_;
+///     };
+template <typename Parameters, typename Results>
 class TypedSkill : public Skill {
 public:
     /// \param description its parameters and results are replaced by those of the lists
@@ -34,6 +48,7 @@ public:
         description_.results = std::move(results_in_place);
     }
 
+    /// Complete once the constructor has returned; does not change.
     const SkillDescription& description() const final { return description_; }
 
     /// Makes the struct and calls plan(). Errors: as FieldList::read() and plan().
@@ -59,12 +74,14 @@ protected:
     virtual Result<std::unique_ptr<ExecutionWork>> plan(const Parameters& parameters) = 0;
 
     /// Answers Check, as Skill::check(). The default only reports whether plan() succeeds.
+    /// Override it in a skill that knows its duration, stopping distance or path.
     virtual Result<CheckReport> assess(const Parameters& parameters) {
         METIER_TRY(plan(parameters));
         return CheckReport{};
     }
 
 private:
+    // Its fields are those of the two lists, in their order.
     SkillDescription description_;
     FieldList<Parameters> parameters_;
     FieldList<Results> results_;

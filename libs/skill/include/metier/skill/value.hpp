@@ -18,6 +18,12 @@ using metier::Range;
 using metier::Vector3;
 
 /// Value of a parameter or a result; its unit is that of its field. monostate is Null: not set.
+///
+///     const ValueMap values{{"Force", 20.0}, {"Width", Value{}}};          // Width: its default
+///     if (const auto* force = std::get_if<double>(&values.at("Force"))) { use(*force); }
+///
+/// A whole number is another type than a double: Value(20) is an Int32, which a Double refuses with
+/// type_mismatch.
 using Value = std::variant<std::monostate, bool, std::int32_t, std::uint32_t, std::uint64_t, double,
                            std::string, Frame, Vector3, std::vector<double>,
                            std::vector<std::string>, std::vector<Range>, std::vector<Frame>>;
@@ -56,6 +62,7 @@ enum class ValueType : std::uint8_t {
 using ValueMap = std::map<std::string, Value, std::less<>>;
 
 /// Type that a value has now.
+/// Threads of the functions here: any; pure.
 inline ValueType typeOf(const Value& value) noexcept {
     return static_cast<ValueType>(value.index());
 }
@@ -69,6 +76,7 @@ inline bool isNull(const Value& value) noexcept {
 std::string_view toString(ValueType type) noexcept;
 
 /// Text for a person: numbers in shortest form, lists in brackets, texts in quotes.
+/// Without the unit, which the value does not know. jsonOf() gives JSON.
 std::string toString(const Value& value);
 
 }  // namespace metier::skill
