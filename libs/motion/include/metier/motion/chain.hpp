@@ -24,6 +24,7 @@ struct JointLimits {
 };
 
 /// A revolute joint and its place in the chain.
+/// Prismatic joints are not supported.
 struct JointDescription {
     /// Name for messages, such as "shoulder_pan".
     std::string name;
@@ -66,6 +67,8 @@ struct ToolFrame {
 };
 
 /// Description of a robot that a server publishes and a client reads: enough to plan motions.
+///
+///     base_from_flange = parent_from_joint(1) * turn(1) * ... * turn(n) * last_from_flange
 struct ChainDescription {
     /// Joints from the base to the flange, 1 to kMaxAxes.
     std::vector<JointDescription> joints;

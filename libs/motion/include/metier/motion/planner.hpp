@@ -123,13 +123,12 @@ enum class RefusalReason {
     /// Two links would touch; only for a model that has capsules.
     collision,
 };
-/// The enumerator's name, for logs and results.
-/// Kind of the refusal.
-/// Kind of the refusal.
+/// The enumerator's name, for logs and results. Valid for ever. Threads: any; pure.
 std::string_view toString(RefusalReason reason) noexcept;
 
 /// A refused motion; `error.message` has value, limit and unit.
 struct Refusal {
+    /// Kind of the refusal.
     RefusalReason reason = RefusalReason::invalid_request;
     /// Code and text of the refusal.
     Error error;
@@ -139,8 +138,8 @@ struct Refusal {
     std::optional<std::size_t> axis;
 };
 
-template <typename T>
 /// A plan, or the reason why there is none.
+template <typename T>
 using Planned = tl::expected<T, Refusal>;
 
 /// Rule for singular places on a Cartesian path.

@@ -95,6 +95,7 @@ public:
 
     /// Makes a model of a chain alone, as a client reads it from a server. It has no shape and no
     /// names.
+    /// What needs shape or names, such as the check of self-collision, is left out for it.
     /// Errors: invalid_argument (number of axes, axis not a unit vector, frames not rigid, limits,
     ///         home outside them, cycle time, name of a tool frame), with the axis.
     static Result<RobotModel> fromChain(ChainDescription chain);
@@ -106,26 +107,33 @@ public:
 
     /// Names, as in RobotAppearance; empty for a chain alone.
     std::string_view name() const noexcept { return appearance_.name; }
+    /// Name of the maker: "Universal Robots".
     std::string_view maker() const noexcept { return appearance_.maker; }
+    /// Name of the product: "UR5".
     std::string_view product() const noexcept { return appearance_.product; }
     /// Number of axes, 1 to kMaxAxes.
     std::size_t axisCount() const noexcept { return chain_.joints.size(); }
+    /// Everything that a server publishes of the robot: joints, frames, limits, tool frames.
     const ChainDescription& chain() const noexcept { return chain_; }
+    /// Forward and inverse kinematics of the chain.
     const Kinematics& kinematics() const noexcept { return kinematics_; }
     /// Limits of an axis, counted from 0; `axis` must be less than axisCount(), which is not
     /// checked.
     const JointLimits& limits(std::size_t axis) const noexcept {
         return chain_.joints[axis].limits;
     }
+    /// Limits of paths of the tool frame; see CartesianLimits for units.
     const CartesianLimits& cartesianLimits() const noexcept { return chain_.cartesian_limits; }
     /// A usable, non-singular working position within the limits [rad].
     const JointVector& home() const noexcept { return chain_.home; }
     /// Controller cycle [s].
     double cycleTime() const noexcept { return chain_.cycle_time; }
+    /// Shape for self-collision; empty: it is not checked.
     const std::vector<Capsule>& capsules() const noexcept { return appearance_.capsules; }
     const std::vector<UncomparedLinks>& notCompared() const noexcept {
         return appearance_.not_compared;
     }
+    /// Shape to draw; may be empty.
     const std::vector<VisualPrimitive>& visual() const noexcept { return appearance_.visual; }
 
     /// Finds a tool frame by its name; "" and "flange" are the flange itself, without mass.

@@ -16,6 +16,10 @@ struct FollowerLimits;
 struct TargetStates;
 
 /// Options of playing out a stream of set-points.
+///
+/// A larger play-out delay forgives a more irregular network, at the price of a later arm: with a
+/// cycle of 8 ms, the default of 3 cycles plays each set-point 24 ms after it was meant. Values out
+/// of range are refused by StreamFollower::create().
 struct StreamOptions {
     /// Period of the controller [s], > 0.
     Seconds cycle{0.008};
@@ -67,8 +71,11 @@ Error toError(const StreamRefusal& refusal);
 
 /// Follows joint positions that arrive irregularly, and never breaks an axis limit.
 ///
-///
 /// Threading: one thread, the control cycle. accept() and next() do not allocate, lock or throw.
+///
+///     auto follower = StreamFollower::create(model, {.cycle = Seconds(0.008)}, measured);
+///     if (const auto refused = follower->accept(set_point, intended, now)) { ... }  // irregularly
+///     send(follower->next(now).position);  // every cycle
 class StreamFollower {
 public:
     enum class State {
@@ -90,6 +97,9 @@ public:
                                          const JointVector& start);
 
     /// Takes a set-point, or leaves everything unchanged and returns the reason.
+    /// Checked in this order: stream over, number of axes, time, then each axis for finite, joint
+    /// limits and jump. The first set-point counts as one play-out delay, at least one cycle, after
+    /// the start.
     /// \param position      [rad], one value per axis, within the joint limits
     /// \param intended_time time of the set-point on the sender's clock [s]; later than the one
     ///                      before. Only differences count, so the two clocks need not agree.
@@ -106,6 +116,7 @@ public:
 
     /// Computes the set-point of this cycle, always within the axes' limits of position, velocity
     /// and acceleration, with StreamOptions::braking_factor and jerk_factor.
+    /// Call it in every cycle, also if no set-point came.
     /// \param now one cycle later than at the call before [s]
     SetPoint next(Seconds now) noexcept;
 
@@ -121,6 +132,7 @@ public:
     std::uint64_t missedCycles() const noexcept { return missed_; }
 
 private:
+    /// A set-point: its time on the sender's clock [s] and its position [rad].
     struct Knot {
         double time = 0;
         JointVector position;
@@ -161,8 +173,10 @@ private:
     void startBraking() noexcept;
     void brake() noexcept;
 
+    // The jerk limits in limits_ have StreamOptions::jerk_factor in them already.
     StreamOptions options_;
     std::array<JointLimits, kMaxAxes> limits_{};
+    // Last set-point that next() returned; the arm is assumed to be there.
     SetPoint now_;
     State state_ = State::waiting;
     std::array<Knot, kKnots> knots_{};
