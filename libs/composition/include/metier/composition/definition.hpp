@@ -17,6 +17,8 @@ namespace metier::composition {
 // Content of a composition file (docs/guide/compose.md). Lines count from 1 and are for messages.
 
 /// A constant as written in the file; its type follows from its target.
+/// A whole number may stand where a Double is needed; a list of six numbers may be a frame [m,
+/// rad], one of three a vector.
 using Literal = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
                              std::vector<std::string>, std::vector<std::vector<double>>>;
 
@@ -31,6 +33,7 @@ struct Reference {
 };
 
 /// One number of a list.
+/// Its value is `constant`, or the number behind `from` times `factor`.
 struct Term {
     /// The number, if there is no reference, in the unit of its target.
     double constant = 0.0;
@@ -43,6 +46,7 @@ struct Term {
 /// Axes along which a frame is shifted: those of the frame in which it is given, or its own.
 enum class ShiftAxes { base, own };
 
+/// Checked against its target by compose(); `line` and `key` are for its messages.
 /// Source of a value.
 struct Binding {
     /// Line in the file.
@@ -61,11 +65,13 @@ struct Binding {
 
 /// A condition of a choice or a loop.
 struct Condition {
+    /// Three comparisons of `subject` with `operand`, and three ways to count `parts`.
     enum class Kind { is, less, greater, all, any, negation };
     /// Comparison, or the way in which `parts` count together.
     Kind kind = Kind::is;
     /// Place in the file.
     std::uint32_t line = 0;
+    /// Key in the file, for messages.
     std::string key{};
     /// Compared value; for is, less, greater.
     Reference subject{};
@@ -84,6 +90,7 @@ struct Argument {
 };
 
 /// Further attempts after a failed one.
+/// The first attempt does not count: at most `times` + 1 attempts are made.
 struct Retry {
     /// Number of further attempts, 1 to 1000.
     std::uint32_t times = 1;
@@ -118,6 +125,7 @@ enum class WaitFor {
 };
 
 /// A step of a composition, with the steps below it.
+/// Members that the kind does not use keep their defaults.
 struct Step {
     /// Line in the file.
     std::uint32_t line = 0;
@@ -193,6 +201,7 @@ struct Definition {
     std::string file{};
     /// BrowseNames of the composed skill and of its type, at most 80 bytes.
     std::string name{};
+    /// BrowseName of the type of the composed skill, at most 80 bytes.
     std::string type{};
     /// Namespace of the type, if no model has it: "urn:metier:composition:TYPE" unless the file says
     /// otherwise.
@@ -233,9 +242,8 @@ inline constexpr std::size_t kMostReportedSteps = 1'000;
 inline constexpr std::size_t kLongestStepName = 40;
 
 /// Calls visit(step) for all calls below a step, itself included, in the order of the file.
-template <typename Visit>
-/// Calls visit(step) for all calls below a step, itself included, in the order of the file.
 /// Threads: any.
+template <typename Visit>
 void forEachCall(const Step& step, const Visit& visit) {
     if (step.kind == StepKind::call) {
         visit(step);

@@ -13,6 +13,9 @@ namespace metier::composition {
 /// A skill of the same process. Its clock is this machine's, so compareClocks() always gives zero.
 ///
 /// Threading: the owner's thread, which is the Program's.
+///
+/// The Program's answers come later, by the executor: no call of this class calls the listener or
+/// `done` before it returns.
 class LocalUsedSkill final : public UsedSkill, private skill::ProgramObserver {
 public:
     /// \param program  must outlive this
@@ -27,25 +30,39 @@ public:
 
     const std::string& name() const override { return program_.description().name; }
     const skill::SkillDescription& description() const override { return program_.description(); }
+    /// Always: it lives as long as this.
     Result<void> available() const override { return {}; }
+    /// Present state; it may have been changed by another client.
     skill::State state() const override { return program_.state(); }
+    /// Text of the Program's last transition.
     std::string reasonText() const override { return program_.reasonText(); }
+    /// Resets at once; listener.onReset() follows. The listener replaces an earlier one.
+    /// Errors: those of Program::reset(); no call follows then.
     Result<void> reset(UsedSkillListener& listener) override;
+    /// Plans at once, `done` gets the report later; not if this ends before.
     void check(const skill::ValueMap& parameters,
                std::function<void(Result<skill::CheckReport>)> done) override;
     void compareClocks(std::function<void(Result<ClockOffset>)> done) override;
+    /// A refused Start is reported by listener.onEnd() with Kind::refused.
     void begin(skill::StartRequest request, UsedSkillListener& listener) override;
+    /// Errors: those of Program::suspend(). listener.onSuspended() follows at standstill.
     Result<void> suspend() override { return program_.suspend(caller_); }
+    /// Errors: those of Program::resume(). listener.onResumed() follows.
     Result<void> resume() override { return program_.resume(caller_); }
+    /// A refused Halt is reported by listener.onRefused().
     void halt() override;
+    /// Nothing is reported any more; an execution that runs goes on.
     void release() override { link_->listener = nullptr; }
 
 private:
     /// Target of posted work; valid as long as both ends exist.
+    /// A replaced listener leaves its Link with nullptr, so that what was posted for it does
+    /// nothing.
     struct Link {
         UsedSkillListener* listener = nullptr;
     };
 
+    // Calls of the Program. Only those of the execution that was begun here reach the listener.
     void onTransition(const skill::TransitionEvent& event) override;
     void onStopping(const skill::StoppingEvent& event) override;
     void onProgress(const skill::Value& intermediate) override;
@@ -57,6 +74,7 @@ private:
     template <typename Answer>
     void answer(std::function<void(Result<Answer>)> done, Answer answer);
     void end(UsedSkillEnd end);
+    /// Outcome for the composed skill; a Reset while Suspended counts as halted.
     UsedSkillEnd endOf(const skill::TransitionEvent& event) const;
 
     skill::Program& program_;
