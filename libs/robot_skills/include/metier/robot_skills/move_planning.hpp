@@ -33,6 +33,7 @@ motion::Planned<motion::Trajectory> planJointLinear(const motion::RobotModel& mo
                                                     const JointMoveParameters& parameters);
 
 /// Request that planCartesianLinear() makes to the planner, without Duration.
+/// The units are those of motion::LinRequest: m, rad, s.
 motion::LinRequest linRequest(const motion::JointVector& start,
                               const CartesianMoveParameters& parameters);
 

@@ -27,6 +27,7 @@ public:
     void clear() noexcept { newest_.write({}); }
 
 private:
+    /// Whether a move runs, and its stop.
     struct Newest {
         bool known = false;
         motion::StoppingEstimate way{};
@@ -36,6 +37,7 @@ private:
 
 /// Stop of an arm whose set-points metier does not plan, computed from its measured velocity: each
 /// axis brakes with its own limits. The way is that of the flange.
+/// Zero, too, if the state has another number of axes than the model.
 /// \param acceleration of each axis, which ends first [rad/s2]; empty: none
 /// \return zero for an arm at rest that is not about to move
 /// Threads: any, also a cycle thread; pure.

@@ -14,6 +14,9 @@ namespace metier::robot_skills {
 ///
 /// Threading: figures() and lastRefusal() on any thread. The cycle thread notes lag and dropped
 /// set-points, without a lock; the owner's thread notes everything else.
+///
+///     report->noteLag(0.012);               // cycle thread
+///     const auto now = report->figures();   // any other thread, for a Variable or a metric
 class StreamReport {
 public:
     /// Values at one moment; each is whole, but they may belong to different set-points.
@@ -56,18 +59,22 @@ public:
         last_refusal_.clear();
     }
     /// Keeps the step [s] if it is the largest so far. Owner's thread.
+    /// \param step [s], by its absolute value
     void noteClockStep(double step) noexcept {
         if (std::abs(step) > std::abs(clock_step_.load())) {
             clock_step_.store(step);
         }
     }
     /// Counts a refusal and keeps its reason. Locks.
+    /// Owner's thread.
+    /// \param why text for the client, with value, limit and unit
     void noteRefused(std::string why) {
         ++refused_;
         const std::lock_guard lock(mutex_);
         last_refusal_ = std::move(why);
     }
     /// Shows the lag of the newest set-point [s]. Cycle thread.
+    /// \param lag [s], >= 0
     void noteLag(double lag) noexcept {
         lag_.store(lag);
         if (lag > largest_lag_.load()) {
@@ -78,12 +85,15 @@ public:
     void noteDropped() noexcept { ++dropped_; }
 
 private:
+    // lag_, largest_lag_ and dropped_ have one writer at a time, the cycle thread or restart(); so
+    // a load and a store suffice where a larger value is kept.
     std::atomic<double> lag_{0.0};
     std::atomic<double> largest_lag_{0.0};
     std::atomic<double> clock_step_{0.0};
     std::atomic<std::uint64_t> refused_{0};
     std::atomic<std::uint64_t> dropped_{0};
     mutable std::mutex mutex_;
+    // Guarded by mutex_; a cycle thread never touches it.
     std::string last_refusal_;
 };
 
