@@ -14,6 +14,7 @@
 namespace metier::server {
 
 /// Command that starts a process.
+/// Given to link::ChildProcess as it is: no shell reads it.
 struct CellCommand {
     /// Program (a path, or a name found in PATH) and its arguments; not empty.
     std::vector<std::string> words;
@@ -83,6 +84,7 @@ public:
     /// Errors: the output of the first server that was not ready within 30 s; cancelled.
     static Result<CellRunner> start(const cell::CellConfig& cell, const CellCommands& commands,
                                     int stop_descriptor, const OnReady& on_ready);
+    /// The moved-from object has no processes.
     CellRunner(CellRunner&&) noexcept;
     CellRunner& operator=(CellRunner&&) = delete;
     /// Ends every process: servers that use others first, virtual controllers last. Waits 6 s at
@@ -114,10 +116,12 @@ private:
     Result<void> startMember(std::unique_ptr<CellMember> member, int stop_descriptor);
     Result<void> startAll(const cell::CellConfig& cell, const CellCommands& commands,
                           int stop_descriptor, const OnReady& on_ready);
+    /// Checks each process, without waiting.
     std::optional<Ended> lookAtAll(OnFailure on_failure, const OnChange& on_change);
     /// Waits until there is something to check, or until the descriptor becomes readable.
     /// \return whether the descriptor became readable
     bool await(int wake_descriptor, SteadyTime deadline) const;
+    /// Waits for the ends of the processes of this rank and above, until the deadline.
     void awaitEnds(CellRank least, SteadyTime deadline);
 
     std::vector<Running> running_;

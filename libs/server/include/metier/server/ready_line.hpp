@@ -21,6 +21,10 @@ inline std::string readyVirtualLine(std::string_view address) {
 }
 
 /// Address in a ready line of either kind; nothing for any other line.
+///
+///     addressOfReadyLine("ready opc.tcp://127.0.0.1:4841");  // opc.tcp://127.0.0.1:4841
+///     addressOfReadyLine("ready virtual 127.0.1.1");         // 127.0.1.1
+/// \param line without its line end
 inline std::optional<std::string> addressOfReadyLine(std::string_view line) {
     constexpr std::string_view kServer = "ready opc.tcp://";
     constexpr std::string_view kVirtual = "ready virtual ";
