@@ -179,13 +179,13 @@ struct ServerConfig {
     std::variant<ArmServer, GripperServer, MoveComponent, CompositionServer, SynchronizedServer>
         kind;
 
-    /// Keys of one kind of server; nullptr if the server is of another kind.
-    template <typename Kind>
     /// Keys of one kind of server; nullptr if the server is of another kind. Valid as long as
     /// `kind` is not changed.
+    template <typename Kind>
     const Kind* as() const noexcept {
         return std::get_if<Kind>(&kind);
     }
+    /// The same for a configuration that is changed.
     template <typename Kind>
     Kind* as() noexcept {
         return std::get_if<Kind>(&kind);
@@ -194,6 +194,7 @@ struct ServerConfig {
     const DriverChoice* driver() const noexcept;
     /// Servers whose skills this one runs; empty for the kinds that run none.
     std::span<const UsedServer> usedServers() const;
+    /// The same, to fill in the addresses of servers.
     std::span<UsedServer> usedServers();
 };
 

@@ -21,6 +21,7 @@ struct LimitKind {
 };
 
 /// All kinds of limits. The span is valid as long as the program runs.
+/// Threads: any.
 std::span<const LimitKind> limitKinds() noexcept;
 
 /// A limit that a cell file sets.

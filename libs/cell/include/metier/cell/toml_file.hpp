@@ -104,9 +104,6 @@ public:
     std::uint32_t line() const;
 
 private:
-    /// A TOML file that is read table by table. It owns what its tables and values refer to.
-    ///
-    /// Threading: one thread.
     friend class TomlFile;
     friend class TomlValue;
     struct Impl;
