@@ -21,6 +21,7 @@ struct GripperMount {
 };
 
 /// A server to be shown, and what the cell file says of it.
+/// Names refer to servers of the same Cell.
 struct CellServer {
     /// Name for people, unique; part of the keys of its skills.
     std::string name;
@@ -39,8 +40,9 @@ struct CellServer {
 
 /// Control port of the virtual controllers' world.
 struct CellWorld {
-    /// IP address and TCP port.
+    /// IP address of its process.
     std::string address;
+    /// TCP port; 7400 unless the cell file says otherwise.
     std::uint16_t port = 7400;
     /// Table and walls, in the form in which they are sent to browsers
     nlohmann::json fixed = nlohmann::json::object();
@@ -60,6 +62,7 @@ struct Cell {
 
 /// Addresses by name, from the file of `metier up --endpoints`; used instead of those of the cell
 /// file.
+/// A name that is missing here keeps its address of the cell file.
 struct Endpoints {
     /// Addresses "opc.tcp://..." by the servers' names.
     std::map<std::string, std::string> servers;

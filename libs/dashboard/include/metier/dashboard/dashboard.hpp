@@ -46,6 +46,9 @@ struct Options {
 ///
 /// Threading: any thread may call it. It has threads for each server, each connection of a browser,
 /// and the stream.
+///
+///     auto page = Dashboard::start({.cell = cellFrom(config), .lab = true, .web = web}, clock);
+///     print("http://127.0.0.1:{}", (*page)->port());
 class Dashboard {
 public:
     /// Starts serving; connects to the servers in the background.
