@@ -29,8 +29,15 @@ struct SkillReferences {
 /// Reads references of skills and types of one server. Text is returned as the server sent it.
 ///
 /// Threads: one at a time, any but the client's own; waits.
+///
+///     auto reader = ReferenceReader::create(client);
+///     if (const auto found = reader->read(skill_node); found) { show(found->terms, found->uses); }
+///
+/// The client must outlive it. NodeIds of the namespace are looked up once: make a new one after
+/// the server was started again.
 class ReferenceReader {
 public:
+    /// A server without the Metier namespace is no error: its skills have no uses then.
     /// Errors: those of the server.
     static opcua::Answer<ReferenceReader> create(opcua::Client& client);
 
