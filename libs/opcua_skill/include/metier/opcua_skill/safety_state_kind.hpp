@@ -8,6 +8,7 @@ namespace metier::opcua_skill {
 
 /// Safety state of a controller as published, with the numbers of the Metier NodeSet's
 /// SafetyStateKind. Observed, never commanded.
+/// The numbers are read by clients: they never change.
 enum class SafetyStateKind : std::int32_t {
     /// Not known; also of a device without a connection.
     unknown = 0,

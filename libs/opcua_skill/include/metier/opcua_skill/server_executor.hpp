@@ -15,12 +15,19 @@ namespace metier::opcua_skill {
 /// Shared with Executions, which may outlive the server: after close() it drops posted work, and
 /// after() gives an empty Timer.
 /// Threading: as skill::Executor; a short lock guards the server.
+///
+///     auto executor = std::make_shared<ServerExecutor>(server);
+///     Program program({}, std::move(skill), executor, clock);
+///     ...
+///     executor->close();  // before the server ends
 class ServerExecutor final : public skill::Executor {
 public:
     /// `server` must live until close().
     explicit ServerExecutor(opcua::Server& server) : server_(&server) {}
 
+    /// Any thread. Order as Server::post(); dropped after close().
     void post(std::function<void()> work) override;
+    /// Server's thread. The Timer may outlive the server.
     skill::Timer after(std::chrono::nanoseconds delay, std::function<void()> work) override;
 
     /// Detaches the server, which may end from now on. Any thread.
