@@ -39,9 +39,12 @@ struct ChildOptions {
 ///
 /// Threading: one thread, which must live as long as the child: the kernel takes the thread that
 /// started the child for its owner.
+///
+/// No signal is blocked in the child at its start, whatever this thread blocks.
 class ChildProcess {
 public:
     /// Starts the program; does not wait for it. Its standard output goes to readLine().
+    /// Returns once the program runs, or could not: a wrong path is an error here, not a later end.
     /// \param command program (a path, or a name found in PATH) and its arguments, not empty
     /// Errors: not_found if the program cannot be started.
     static Result<ChildProcess> start(const std::vector<std::string>& command,
@@ -51,7 +54,9 @@ public:
         return start(command, ChildOptions{.error_output = error_output});
     }
 
+    /// The moved-from object has no child; it may only be destroyed or assigned to.
     ChildProcess(ChildProcess&& other) noexcept;
+    /// Ends the child that this object had before, as the destructor does.
     ChildProcess& operator=(ChildProcess&& other) noexcept;
     /// Ends the child: SIGTERM, and SIGKILL after 2 s. Waits for its end.
     ~ChildProcess();
@@ -64,10 +69,13 @@ public:
     int endDescriptor() const noexcept { return handle_; }
 
     /// The next line of the child's standard output, without its newline. Waits until the deadline.
+    /// Text after the last newline is lost when the child closes its output. A child that prints
+    /// more than the pipe holds, 64 kB by default, stops until lines are read.
     /// Errors: timeout at the deadline, connection_lost when the child closed its output.
     Result<std::string> readLine(SteadyTime deadline);
 
     /// Waits for the child's end; returns nothing if it still runs at the deadline.
+    /// May be called again, also after the end; a deadline that is over only looks.
     /// \return its exit status, or 128 + the number of the signal that ended it
     std::optional<int> waitUntil(SteadyTime deadline);
     /// Reports whether the child still runs; does not wait.
@@ -78,12 +86,14 @@ public:
 
 private:
     ChildProcess(pid_t pid, int output, int handle) : pid_(pid), output_(output), handle_(handle) {}
+    /// Ends the child and closes the descriptors; nothing to do after a move.
     void release() noexcept;
     Result<void> readMore(SteadyTime deadline);
 
     pid_t pid_;
     int output_;
     int handle_;  // pidfd: becomes readable when the child ends
+    // Output that was read and is not a whole line yet.
     std::string buffered_;
     std::optional<int> exit_status_;
 };

@@ -10,6 +10,9 @@ namespace metier::link {
 /// further end, up to 30 s. After a run of kProven or longer the pause is 0.5 s again.
 ///
 /// Threading: one thread.
+///
+///     RestartPause pause;
+///     wait(pause.next(ran_for));  // 0.5 s, then 1 s, 2 s, ... 30 s while it keeps ending early
 class RestartPause {
 public:
     /// Length of the first pause.

@@ -13,6 +13,9 @@ namespace metier::link {
 /// end in its own way.
 ///
 /// Threading: one thread creates and destroys it; the start is what happens in between.
+///
+///     const StartWatch watch(signal);
+///     connectToEverything();          // Ctrl-C ends the program here
 class StartWatch {
 public:
     /// \param signal  must outlive this
@@ -25,6 +28,8 @@ public:
     StartWatch& operator=(const StartWatch&) = delete;
 
 private:
+    /// Ends the process with EXIT_FAILURE, without destructors, if the start goes on for `orderly`
+    /// after the signal.
     void watch(const StopSignal& signal, std::chrono::milliseconds orderly);
 
     WakeEvent over_;

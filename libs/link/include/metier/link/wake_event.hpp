@@ -22,6 +22,7 @@ public:
     /// \return whether it was rung
     bool wait(const StopSignal& signal);
     /// Waits until ring() was called; false at the deadline.
+    /// A stop signal does not end this wait.
     bool waitUntil(SteadyTime deadline);
 
 private:
