@@ -26,16 +26,19 @@ public:
     /// The certificate in DER form, without bytes that followed it.
     const std::string& der() const noexcept { return der_; }
     /// The certificate in PEM form.
+    /// Text between "BEGIN CERTIFICATE" and "END CERTIFICATE", with both lines.
     std::string pem() const;
     /// SHA-1 of the DER form, 40 hexadecimal digits: the name of a certificate in OPC UA.
     const std::string& thumbprint() const noexcept { return thumbprint_; }
     /// Names of the holder and of the signer, such as "CN=metier"; control characters are escaped.
     const std::string& subject() const noexcept { return subject_; }
+    /// Name of the signer; equal to subject() does not mean self-signed, see isSelfSigned().
     const std::string& issuer() const noexcept { return issuer_; }
     /// URI in the SubjectAltName; empty if there is none, or several.
     const std::string& applicationUri() const noexcept { return application_uri_; }
     /// Begin and end of its validity, both included.
     UtcTime notBefore() const noexcept { return not_before_; }
+    /// Not compared with the present time here.
     UtcTime notAfter() const noexcept { return not_after_; }
     /// Length of the public key [bit]; 0: a key of an unknown kind.
     int keyBits() const noexcept { return key_bits_; }
@@ -50,6 +53,7 @@ public:
 private:
     Certificate() = default;
 
+    // Everything but der_ is derived from it when it is parsed.
     std::string der_;
     std::string thumbprint_;
     std::string subject_;

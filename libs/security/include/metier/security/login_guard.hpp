@@ -38,6 +38,9 @@ public:
                                    std::chrono::milliseconds patience = kReadPatience);
 
     /// Checks a password and returns the role of its user.
+    /// An unknown user takes as long as a wrong password, so the time says nothing. A right
+    /// password ends the count of this user and application. If the changed file of users cannot be
+    /// read, the error is logged and the users of before stay.
     /// \param thumbprint thumbprint of the application's certificate
     /// Errors: access_denied: a wrong name or password (the text does not say which), or too many
     ///         attempts, with the time to wait.
@@ -49,11 +52,13 @@ public:
     std::optional<Role> roleOf(const std::string& user);
 
 private:
+    /// Wrong passwords of one pair, and the time until which further attempts are refused.
     struct Failures {
         int count = 0;
         SteadyTime last{};
         SteadyTime barred_until{};
     };
+    /// User and thumbprint; an empty user stands for all users of the application together.
     using Who = std::pair<std::string, std::string>;
 
     struct Users {
