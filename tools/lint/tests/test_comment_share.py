@@ -21,6 +21,15 @@ class Lines(unittest.TestCase):
     def test_headers_of_this_project_are_found(self):
         self.assertIn("libs/motion", comment_share.shares(comment_share.ROOT))
 
+    def test_a_library_has_the_lines_of_its_headers(self):
+        of_headers = [
+            lines
+            for path, (_, lines) in comment_share.headers(comment_share.ROOT).items()
+            if path.startswith("libs/motion/")
+        ]
+        self.assertGreater(len(of_headers), 1)
+        self.assertEqual(comment_share.shares(comment_share.ROOT)["libs/motion"][1], sum(of_headers))
+
 
 if __name__ == "__main__":
     unittest.main()
