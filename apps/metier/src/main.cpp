@@ -28,14 +28,12 @@ constexpr const char* kAbout =
 
 void addCommands(CLI::App& app, metier::app::CommandContext& context) {
     using namespace metier::app;
-    for (const auto add : {addDemo,      addUp,         addServe,     addList,
-                           addRun,       addWatch,      addHalt,      addSkillCommands,
-                           addOwn,       addAudit,      addHistory,   addReplay,
-                           addTrace,     addFind,       addDiscovery, addSquare,
-                           addPickPlace, addFk,         addIk,        addCheck,
-                           addPlot,      addRobotFiles, addGraph,     addTypes,
-                           addDashboard, addVirtual,    addTrust,     addUser,
-                           addCompletion}) {
+    for (const auto add :
+         {addDemo,          addUp,     addServe,     addList,      addRun,     addWatch, addHalt,
+          addSkillCommands, addOwn,    addAudit,     addHistory,   addReplay,  addTrace, addFind,
+          addDiscovery,     addSquare, addPickPlace, addFk,        addIk,      addCheck, addPlot,
+          addRobotFiles,    addGraph,  addTypes,     addDashboard, addVirtual, addTrust, addUser,
+          addCompletion}) {
         add(app, context);
     }
 }

@@ -141,7 +141,8 @@ Result<skill::SkillTypes> parseSkillTypes(std::string_view text, std::string nam
     return readTypes(TomlFile::parse(text, std::move(name)));
 }
 
-skill::SkillTypes skillTypesOf(const Definition& definition, const skill::SkillDescription& description) {
+skill::SkillTypes skillTypesOf(const Definition& definition,
+                               const skill::SkillDescription& description) {
     auto type = skill::skillTypeOf(description, definition.base);
     type.terms = definition.terms;
     skill::SkillTypes types;

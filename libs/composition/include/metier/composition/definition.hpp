@@ -203,8 +203,8 @@ struct Definition {
     std::string name{};
     /// BrowseName of the type of the composed skill, at most 80 bytes.
     std::string type{};
-    /// Namespace of the type, if no model has it: "urn:metier:composition:TYPE" unless the file says
-    /// otherwise.
+    /// Namespace of the type, if no model has it: "urn:metier:composition:TYPE" unless the file
+    /// says otherwise.
     std::string type_namespace{};
     /// BrowseName of the type above it.
     std::string base = "SequenceSkillType";
