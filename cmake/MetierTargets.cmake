@@ -35,7 +35,7 @@ set(METIER_COMMON_HEADERS
     <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <cstdint> <deque> <filesystem>
     <fmt/format.h> <fmt/ranges.h> <fstream> <functional> <future> <map> <memory> <mutex> <numbers>
     <optional> <set> <span> <stdexcept> <string> <string_view> <thread> <tl/expected.hpp>
-    <unordered_map> <utility> <variant> <vector>)
+    <unordered_map> <utility> <variant> <vector> <Eigen/Core> <Eigen/Geometry>)
 
 # metier_make_precompiled_headers(): metier_common_headers for every target, with GoogleMock
 # metier_test_headers for the tests. A file still names each header that it uses: the preset `lint`
@@ -47,12 +47,13 @@ function(metier_make_precompiled_headers)
     set(empty ${PROJECT_BINARY_DIR}/precompiled.cpp)
     file(CONFIGURE OUTPUT ${empty} CONTENT "")
     add_library(metier_common_headers OBJECT ${empty})
-    target_link_libraries(metier_common_headers PRIVATE fmt::fmt tl::expected metier::warnings)
+    target_link_libraries(metier_common_headers PRIVATE
+        Eigen3::Eigen fmt::fmt tl::expected metier::warnings)
     target_precompile_headers(metier_common_headers PRIVATE ${METIER_COMMON_HEADERS})
     if(METIER_TESTS)
         add_library(metier_test_headers OBJECT ${empty})
-        target_link_libraries(metier_test_headers PRIVATE fmt::fmt tl::expected GTest::gmock
-            metier::warnings)
+        target_link_libraries(metier_test_headers PRIVATE
+            Eigen3::Eigen fmt::fmt tl::expected GTest::gmock metier::warnings)
         target_precompile_headers(metier_test_headers PRIVATE ${METIER_COMMON_HEADERS}
             <gmock/gmock.h>)
     endif()

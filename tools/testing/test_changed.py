@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
-"""Runs the unit tests of the libraries that a change touches, largest change first.
+"""Runs the unit tests of the libraries that a change touches, the lowest library first.
 
   tools/testing/test_changed.py --preset asan               the change is found by itself
   tools/testing/test_changed.py --preset tsan --base main   everything since the common ancestor with main
   tools/testing/test_changed.py --list                      only prints the libraries and their test programs
 
-Builds the test programs of one library, runs them, and goes on with the next. It begins no library
-after --minutes, ends a build after half as long again, and prints which libraries it left out.
+Builds the test programs of one library, runs them, and goes on with the next: what a library is
+built on is there when its turn comes. It begins no library after --minutes, ends a build after half
+as long again, and prints which libraries it left out.
 Without --base the change is, whichever is there first: a merge commit against its first parent, the
 branch against origin/main or main, or the last 24 hours before the newest commit.
 """
 
 import argparse
+import json
 import os
 import re
 import signal
@@ -102,8 +104,15 @@ def test_folders() -> dict[str, tuple[str, ...]]:
     return found
 
 
+def height(folder: str) -> int:
+    """Its place in the root's CMakeLists.txt, where the lowest library is the first."""
+    text = (ROOT / "CMakeLists.txt").read_text()
+    at = text.find(f"add_subdirectory({folder})")
+    return at if at >= 0 else text.find("add_subdirectory(${device_folder})")
+
+
 def touched(lines: dict[str, int]) -> list[Library]:
-    """The libraries of these files, largest change first."""
+    """The libraries of these files, the lowest first."""
     folders = test_folders()
     counts: dict[str, int] = {}
     for path, count in lines.items():
@@ -113,7 +122,7 @@ def touched(lines: dict[str, int]) -> list[Library]:
             if folder in folders:
                 counts[folder] = counts.get(folder, 0) + count
                 break
-    ordered = sorted(counts, key=lambda folder: (-counts[folder], folder))
+    ordered = sorted(counts, key=lambda folder: (height(folder), folder))
     return [Library(folder, folders[folder], counts[folder]) for folder in ordered]
 
 
@@ -147,9 +156,16 @@ class Budget:
         return max(1.0, LATEST_END * self._seconds - (time.monotonic() - self._begin))
 
 
-def call(command: list[str], seconds: float) -> int | None:
+def environment_of(preset: str) -> dict[str, str]:
+    """The environment of its tests in CMakePresets.json: what the sanitizer is to leave out, for example."""
+    presets = json.loads((ROOT / "CMakePresets.json").read_text())["testPresets"]
+    [found] = [entry.get("environment", {}) for entry in presets if entry["name"] == preset]
+    return {name: value.replace("${sourceDir}", str(ROOT)) for name, value in found.items()}
+
+
+def call(command: list[str], seconds: float, environment: dict[str, str] | None = None) -> int | None:
     """Its exit status; None if it was ended because the time was over."""
-    process = subprocess.Popen(command, cwd=ROOT, start_new_session=True)
+    process = subprocess.Popen(command, cwd=ROOT, start_new_session=True, env={**os.environ, **(environment or {})})
     try:
         return process.wait(seconds)
     except subprocess.TimeoutExpired:
@@ -170,6 +186,7 @@ def test(library: Library, preset: str, jobs: int, budget: Budget) -> int | None
         ["ctest", "--test-dir", f"build/{preset}/{library.folder}", "--output-on-failure", "--no-tests=error"]
         + ["-j", str(jobs), "-LE", LEFT_OUT_LABELS],
         budget.left(),
+        environment_of(preset),
     )
 
 

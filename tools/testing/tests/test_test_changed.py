@@ -30,6 +30,8 @@ class Repository(unittest.TestCase):
         for library in ("libs/skill", "libs/motion", "libs/drivers/ur"):
             self.write(f"{library}/CMakeLists.txt", f"metier_add_test({library.split('/')[-1]}_tests\n")
         self.write("libs/plain/CMakeLists.txt", "metier_add_library(plain)\n")
+        order = ("libs/motion", "${device_folder}", "libs/skill")
+        self.write("CMakeLists.txt", "".join(f"add_subdirectory({folder})\n" for folder in order))
         self.first = self.commit(NOW - 3 * DAY_S)
 
     def use(self, root: Path):
@@ -61,13 +63,14 @@ class Repository(unittest.TestCase):
         self.said = said.getvalue()
         return [library.folder for library in found]
 
-    def test_the_largest_change_comes_first(self):
-        self.write("libs/skill/src/a.cpp", "1\n")
+    def test_the_lowest_library_comes_first_however_little_of_it_changed(self):
+        self.write("libs/skill/src/a.cpp", "1\n2\n3\n4\n")
         self.write("libs/drivers/ur/src/a.cpp", "1\n2\n3\n")
+        self.write("libs/motion/src/a.cpp", "1\n")
         self.write("docs/a.md", "1\n2\n3\n4\n5\n")
         self.write("libs/plain/src/a.cpp", "1\n")
         self.commit(NOW)
-        self.assertEqual(self.touched(self.first), ["libs/drivers/ur", "libs/skill"])
+        self.assertEqual(self.touched(self.first), ["libs/motion", "libs/drivers/ur", "libs/skill"])
 
     def test_what_is_not_committed_counts(self):
         self.write("libs/motion/CMakeLists.txt", "metier_add_test(motion_tests\n# more\n")
@@ -123,6 +126,18 @@ class Repository(unittest.TestCase):
     def test_a_base_that_is_not_there_is_refused(self):
         with self.assertRaisesRegex(SystemExit, "no commit nowhere"):
             self.touched("nowhere")
+
+
+class Environment(unittest.TestCase):
+    """What CMakePresets.json sets for the tests of a preset."""
+
+    def test_the_leaks_of_libraries_are_left_out_under_asan(self):
+        options = test_changed.environment_of("asan")["LSAN_OPTIONS"]
+        file = options.removeprefix("suppressions=").split(":")[0]
+        self.assertTrue(Path(file).is_file(), options)
+
+    def test_a_preset_without_one_has_none(self):
+        self.assertEqual(test_changed.environment_of("tsan"), {})
 
 
 class Time(unittest.TestCase):
