@@ -223,6 +223,21 @@ TEST_F(AddressSpaceTest, ADataSourceTakesOrRefusesWhatClientsWrite) {
     EXPECT_EQ(bounded.writer().application_name, "bare client");
 }
 
+TEST_F(AddressSpaceTest, ADataSourceTakesNoValueThatItsWriterCallsBadOrUncertain) {
+    const NodeId speed = addSpeed();
+    BoundedSpeed bounded;
+    ASSERT_TRUE(nodes_.setDataSource(speed, bounded.source()));
+    serve();
+    const auto written = Value::of(2.0);
+    EXPECT_EQ(client_.writeWithStatus(speed, written, StatusCode(UA_STATUSCODE_BADSENSORFAILURE)),
+              status::kBadWriteNotSupported);
+    EXPECT_EQ(client_.writeWithStatus(speed, written, StatusCode(UA_STATUSCODE_UNCERTAIN)),
+              status::kBadWriteNotSupported);
+    EXPECT_EQ(client_.read(speed).value, Value::of(1.0));
+    EXPECT_EQ(client_.writeWithStatus(speed, written, status::kGood), status::kGood);
+    EXPECT_EQ(client_.read(speed).value, Value::of(2.0));
+}
+
 TEST_F(AddressSpaceTest, TheServerWritesToADataSourceAsItself) {
     const NodeId speed = addSpeed();
     BoundedSpeed bounded;

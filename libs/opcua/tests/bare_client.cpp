@@ -111,6 +111,24 @@ StatusCode BareClient::write(const NodeId& variable, const Value& value) {
         UA_Client_writeValueAttribute(client_, viewOf(variable), &ValueAccess::native(value)));
 }
 
+StatusCode BareClient::writeWithStatus(const NodeId& variable, const Value& value,
+                                       StatusCode quality) {
+    UA_WriteValue item{};
+    item.nodeId = viewOf(variable);
+    item.attributeId = UA_ATTRIBUTEID_VALUE;
+    item.value.hasValue = true;
+    item.value.value = ValueAccess::native(value);
+    item.value.hasStatus = true;
+    item.value.status = quality.value();
+    UA_WriteRequest request{};
+    request.nodesToWrite = &item;
+    request.nodesToWriteSize = 1;
+    Owned<UA_WriteResponse> response(UA_Client_Service_write(client_, request),
+                                     UA_TYPES[UA_TYPES_WRITERESPONSE]);
+    return StatusCode(response->resultsSize == 1 ? response->results[0]
+                                                 : response->responseHeader.serviceResult);
+}
+
 BareClient::CallResult BareClient::call(const NodeId& object, const NodeId& method,
                                         const std::vector<Value>& inputs) {
     std::vector<UA_Variant> arguments;

@@ -41,6 +41,8 @@ public:
     DataValue read(const NodeId& variable);
     std::optional<bool> readUserExecutable(const NodeId& method);
     StatusCode write(const NodeId& variable, const Value& value);
+    /// With a StatusCode, also if it is Good.
+    StatusCode writeWithStatus(const NodeId& variable, const Value& value, StatusCode quality);
     struct CallResult {
         StatusCode status;
         std::vector<Value> outputs;

@@ -56,10 +56,16 @@ UA_StatusCode handOver(DataValue value, UA_Boolean source_time, const UA_Numeric
     return UA_DataValue_copyVariantRange(whole.get(), &result, *range);
 }
 
-/// Lets `write` take what a client wrote.
+/// Lets `write` take what a client wrote, if the client itself says that it is good: no Variable
+/// has the access bit StatusWrite, and a set-point of bad quality must not move an arm.
 template <typename Write>
 UA_StatusCode handIn(ServerCore& core, void* session_context, const UA_NodeId& id,
                      const UA_DataValue& value, const Write& write) {
+    if (value.hasStatus && value.status != UA_STATUSCODE_GOOD) {
+        core.log().info("write of {} refused: it has the StatusCode {}", fromNative(id).toString(),
+                        StatusCode(value.status).name());
+        return UA_STATUSCODE_BADWRITENOTSUPPORTED;
+    }
     const Value lent = lend(value.value);
     const WriteContext writer{
         core.sessions().of(session_context),
