@@ -87,6 +87,10 @@ void addSkillChoice(CLI::App& command, SkillChoice& choice) {
         ->required();
 }
 
+bool isAddress(const std::string& text) {
+    return text.starts_with("opc.tcp://");
+}
+
 Result<OpenSkill> openSkill(const CommandIdentity& identity, const SkillChoice& choice,
                             OnLoss on_loss) {
     METIER_ASSIGN(auto client, connectTo(identity, choice.url, on_loss));

@@ -29,6 +29,9 @@ SteadyTime deadlineIn(double seconds);
 /// Reaction of a command to the loss of its connection.
 enum class OnLoss { fail, reconnect };
 
+/// Whether a text is the address of a server rather than a file: "opc.tcp://...".
+bool isAddress(const std::string& text);
+
 /// Connects within 5 s. The error names the address.
 Result<std::unique_ptr<opcua::Client>> connectTo(const CommandIdentity& identity,
                                                  const std::string& url,

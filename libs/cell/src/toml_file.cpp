@@ -24,6 +24,7 @@ constexpr std::string_view kNumber = "a finite number";
 
 struct TomlFile::Impl {
     std::string name;
+    std::string content;
     toml::table root;
     // Line numbers order the report as a reader goes through the file.
     std::multimap<toml::source_index, std::string> problems = {};
@@ -33,7 +34,7 @@ struct TomlFile::Impl {
     std::vector<std::unique_ptr<const TomlValue::Impl>> values = {};
 
     // Out of line: TomlTable::Impl is complete only below.
-    Impl(std::string file_name, toml::table table);
+    Impl(std::string file_name, std::string_view text, toml::table table);
     ~Impl();
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
@@ -122,8 +123,8 @@ struct TomlTable::Impl {
     }
 };
 
-TomlFile::Impl::Impl(std::string file_name, toml::table table)
-    : name(std::move(file_name)), root(std::move(table)) {}
+TomlFile::Impl::Impl(std::string file_name, std::string_view text, toml::table table)
+    : name(std::move(file_name)), content(text), root(std::move(table)) {}
 
 TomlFile::Impl::~Impl() = default;
 
@@ -423,7 +424,7 @@ Result<TomlFile> TomlFile::load(const std::filesystem::path& path) {
 Result<TomlFile> TomlFile::parse(std::string_view text, std::string name) {
     METIER_TRY(checkLines(text, name));
     try {
-        return TomlFile(std::make_unique<Impl>(name, toml::parse(text)));
+        return TomlFile(std::make_unique<Impl>(name, text, toml::parse(text)));
     } catch (const toml::parse_error& problem) {
         return fail(Errc::invalid_argument,
                     fmt::format("{}:{}:{}: {}", name, problem.source().begin.line,
@@ -438,6 +439,10 @@ TomlFile::~TomlFile() = default;
 
 TomlTable TomlFile::root() const {
     return impl_->open(&impl_->root, "");
+}
+
+const std::string& TomlFile::content() const noexcept {
+    return impl_->content;
 }
 
 void TomlFile::note(std::uint32_t line, std::string_view what, std::string_view why) const {

@@ -225,6 +225,7 @@ Definition readDefinition(const TomlFile& file, std::string name) {
     const auto root = file.root();
     Definition definition;
     definition.file = std::move(name);
+    definition.text = file.content();
     definition.name = root.text("name");
     checkName(root, "name", definition.name, kLongestName);
     definition.type = root.textOr("type", definition.name + "Type");

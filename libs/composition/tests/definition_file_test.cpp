@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "bench.hpp"
 
 namespace metier::composition {
@@ -44,9 +47,12 @@ TEST(CompositionFile, IsReadAsAWhole) {
 }
 
 TEST(CompositionFile, OfTheSquareIsRight) {
-    const auto definition = loadDefinition(std::string(METIER_COMPOSITIONS_DIR) + "/square.toml");
+    const auto path = std::string(METIER_COMPOSITIONS_DIR) + "/square.toml";
+    const auto definition = loadDefinition(path);
     ASSERT_TRUE(definition) << definition.error().message;
     EXPECT_EQ(definition->root.steps[1].kind, StepKind::loop);
+    std::ifstream file(path);
+    EXPECT_EQ(definition->text, std::string(std::istreambuf_iterator<char>(file), {}));
 }
 
 TEST(CompositionFile, KnowsWishesOfUsedSkills) {

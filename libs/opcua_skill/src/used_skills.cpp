@@ -68,6 +68,21 @@ Result<void> updateUse(AddressSpace& nodes, const NodeId& user, const RemoteSkil
     return setProperties(nodes, object, metier, used);
 }
 
+Result<void> publishRecipe(AddressSpace& nodes, const NodeId& skill, const std::string& recipe) {
+    METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
+    METIER_TRY(nodes.addVariable(
+        {.node = {.parent = skill,
+                  .reference = opcua::ids::kHasProperty,
+                  .browse_name = {metier, std::string(kRecipe)},
+                  .description = {"en",
+                                  "The composition file that it was made of: steps, values "
+                                  "and used skills."}},
+         .type = opcua::ids::kPropertyType,
+         .data_type = opcua::ids::kString,
+         .value = opcua::Value::of(recipe)}));
+    return {};
+}
+
 Result<NodeId> findSkillObject(const AddressSpace& nodes, const NodeId& skills,
                                const std::string& name) {
     METIER_ASSIGN(const auto children, nodes.browse(skills));

@@ -127,10 +127,6 @@ Result<Exit> runVerify(const AuditOptions& options) {
     return exit;
 }
 
-bool isAddress(const std::string& text) {
-    return text.starts_with("opc.tcp://");
-}
-
 /// As the server publishes it.
 Result<std::string> anchorOfServer(const CommandIdentity& identity, const std::string& url) {
     METIER_ASSIGN(const auto client, connectTo(identity, url));

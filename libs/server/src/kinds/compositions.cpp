@@ -172,6 +172,9 @@ Result<composition::SequenceSkill*> publishSequence(SkillHost& host, const opcua
                               {.control = host.control(),
                                .names = host.names(),
                                .rest_deadline = composition::restDeadlineOf(sequence.definition)}));
+    METIER_ASSIGN(const auto object,
+                  opcua_skill::findSkillObject(host.nodes(), skills, sequence.definition.name));
+    METIER_TRY(opcua_skill::publishRecipe(host.nodes(), object, sequence.definition.text));
     return skill;
 }
 

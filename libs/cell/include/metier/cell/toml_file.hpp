@@ -134,6 +134,8 @@ public:
 
     /// The table of the whole file.
     TomlTable root() const;
+    /// What the file holds, comments included.
+    const std::string& content() const noexcept;
     /// Notes an error in a line that only the caller can see; finish() reports it.
     void note(std::uint32_t line, std::string_view what, std::string_view why) const;
     /// Ends the reading and reports what was noted.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "metier/base/error.hpp"
 #include "metier/opcua/address_space.hpp"
@@ -35,6 +36,15 @@ Result<void> publishUse(opcua::AddressSpace& nodes, const opcua::NodeId& user,
 /// Replaces the address of the skill that is used by an alias published before.
 Result<void> updateUse(opcua::AddressSpace& nodes, const opcua::NodeId& user,
                        const RemoteSkill& used);
+
+/// Adds the Property `Recipe` to a skill object: the composition file that it was made of, so that
+/// anybody can read what the skill does.
+/// \param recipe TOML text (docs/guide/compose.md)
+Result<void> publishRecipe(opcua::AddressSpace& nodes, const opcua::NodeId& skill,
+                           const std::string& recipe);
+
+/// Name of that Property, in metier's namespace.
+inline constexpr std::string_view kRecipe = "Recipe";
 
 /// Finds the skill object of that name below a folder of skills. Errors: not_found.
 Result<opcua::NodeId> findSkillObject(const opcua::AddressSpace& nodes, const opcua::NodeId& skills,
