@@ -1,5 +1,7 @@
 // Reads models/*.toml; models/README.md lists every key.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
 
@@ -235,6 +237,10 @@ void readNotCompared(const TomlTable& root, std::size_t link_count, RobotAppeara
 void readShape(const TomlTable& root, std::size_t link_count, RobotAppearance& appearance) {
     for (const TomlTable& table : root.tables("capsule")) {
         appearance.capsules.push_back(readCapsule(table, link_count));
+    }
+    if (appearance.capsules.size() > kMostCapsules) {
+        root.reject("capsule", fmt::format("{} capsules; self-collision compares {} at most",
+                                           appearance.capsules.size(), kMostCapsules));
     }
     for (const TomlTable& table : root.tables("visual")) {
         appearance.visual.push_back(readVisual(table, link_count));

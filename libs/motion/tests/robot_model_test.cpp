@@ -112,6 +112,21 @@ TEST(RobotModel, TellsTheRoundingOfAShapeAndWhetherItIsGiven) {
     EXPECT_THAT(errorAfter(given, "edge = -1\n").message, HasSubstr("visual[0].edge"));
 }
 
+TEST(RobotModel, RefusesMoreCapsulesThanAreCompared) {
+    const std::string capsule =
+        "\n[[capsule]]\nlink = 6\nfrom = [0, 0, 0]\nto = [0, 0, 0.1]\nradius = 0.05\n";
+    std::string text = fileText("ur5");
+    std::size_t count = RobotModel::parse(text, "ur5")->capsules().size();
+    for (; count < kMostCapsules; ++count) {
+        text += capsule;
+    }
+    EXPECT_TRUE(RobotModel::parse(text, "ur5"));
+    const auto refused = RobotModel::parse(text + capsule, "ur5");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("capsule: 33 capsules; self-collision compares "
+                                                   "32 at most"));
+}
+
 TEST(RobotModel, RefusesLimitsThatAreTheWrongWayRound) {
     EXPECT_THAT(errorAfter("position_deg = [-360, 360]", "position_deg = [10, -10]").message,
                 HasSubstr("axis 1 (base): position limits"));
