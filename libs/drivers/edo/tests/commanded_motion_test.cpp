@@ -136,6 +136,7 @@ TEST(Pacer, GivesOneSetPointPerCycleOnTheAverage) {
 TEST(MachineText, NamesStatesAndBits) {
     EXPECT_EQ(toText({MachineState::calibrated, 0}), "CALIBRATED");
     EXPECT_EQ(toText({MachineState::braked, 0x240}), "BRAKED (brake active, collision)");
+    EXPECT_EQ(toText({MachineState::error, 0x5}), "ERROR (a joint does not answer, overcurrent)");
     EXPECT_EQ(toText({42, 1U << 31U}), "state 42 (bit 31)");
 }
 
