@@ -91,6 +91,19 @@ TEST_F(RecordedProgram, IsRecordedWithItsClientParametersAndResult) {
                 ElementsAre("Ready>Running Executing", "Running>Ready ReadyNotConfigured"));
 }
 
+TEST_F(RecordedProgram, IsRecordedWithThePathOfItsArm) {
+    arm.place({0.5, 0.25}, {0.5, 0.25});
+    ASSERT_TRUE(program->start(kAlice));
+    arm.place({1.5, 1.25}, {1.6, 1.25}, 3);
+    execution.finish({});
+    executor->run();
+    const auto path = file.store()->path(only().number);
+    ASSERT_TRUE(path);
+    ASSERT_GE(path->size(), 2U);
+    EXPECT_EQ(path->front().actual[0], 0.5);
+    EXPECT_EQ(path->back().actual[0], 1.5);
+}
+
 TEST_F(RecordedProgram, IsRecordedWhenItIsSuspendedAndHalted) {
     ASSERT_TRUE(program->start(kAlice));
     ASSERT_TRUE(program->suspend(kAlice));

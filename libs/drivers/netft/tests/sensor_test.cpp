@@ -117,6 +117,22 @@ TEST_F(Sensor, ThatFallsSilentIsLostAndFoundAgain) {
     EXPECT_TRUE(reaches(SafetyState::normal));
 }
 
+TEST_F(Sensor, NotifiesOfALossByItself) {
+    options.silence = 300ms;
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    // Shared with the callback, which may run until the registration has ended.
+    const auto lost = std::make_shared<std::promise<void>>();
+    const auto watch =
+        sensor->onSafetyChange([lost, told = false](const device::Safety& now) mutable {
+            if (now.state == SafetyState::disconnected && !std::exchange(told, true)) {
+                lost->set_value();
+            }
+        });
+    fake.silence(true);
+    EXPECT_EQ(lost->get_future().wait_for(10s), std::future_status::ready);
+}
+
 TEST_F(Sensor, GoesOnAfterRecordsThatAreLost) {
     open();
     ASSERT_TRUE(reaches(SafetyState::normal));
