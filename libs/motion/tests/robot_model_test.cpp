@@ -101,6 +101,13 @@ TEST(RobotModel, RefusesAMisspeltKey) {
                 HasSubstr("color: unknown key"));
 }
 
+TEST(RobotModel, RefusesAPointWithoutThreeCoordinates) {
+    for (const char* point : {"from = [0, 0]", "from = [0, 0, 0, 0]"}) {
+        EXPECT_THAT(errorAfter("from = [0, 0, 0]", point).message,
+                    HasSubstr("capsule[0].from: not 3 finite numbers"));
+    }
+}
+
 TEST(RobotModel, TellsTheRoundingOfAShapeAndWhetherItIsGiven) {
     std::string text = fileText("ur5");
     const auto model = RobotModel::parse(text, "ur5");
