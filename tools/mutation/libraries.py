@@ -44,7 +44,7 @@ LIBRARIES = {
         _driver("ur"),
         _driver("edo"),
         _driver("iiwa"),
-        Library("records", "metier_records", ("records_tests", "recording_tests")),
+        Library("records", "metier_records", ("records_tests", "recorded_programs_tests")),
         Library("robot_skills", "metier_robot_skills", ("robot_skills_tests",), ("gripper_nodeset_tests",)),
         Library("motion", "metier_motion", ("motion_tests", "motion_allocation_tests"), ("robot_skills_tests",)),
         Library("client", "metier_client", ("skill_client_tests", "remote_arm_tests", "remote_skill_tests")),

@@ -1,5 +1,6 @@
 """What the operators change, and that nothing else is touched."""
 
+import re
 import sys
 import tempfile
 import unittest
@@ -49,6 +50,16 @@ def lines(kind: str, source: str = SOURCE) -> set[str]:
             changed = source[: change.start] + change.new + source[change.end :]
             found |= {line.strip() for line in set(changed.splitlines()) - set(source.splitlines())}
     return found
+
+
+class Libraries(unittest.TestCase):
+    """The table of libraries is that of the build."""
+
+    def test_every_test_program_is_one_of_the_build(self):
+        lists = [path for path in ROOT.rglob("CMakeLists.txt") if "build" not in path.relative_to(ROOT).parts]
+        built = set(re.findall(r"metier_add_test\((\w+)", "".join(path.read_text() for path in lists)))
+        named = {program for library in LIBRARIES.values() for program in library.tests + library.dependants}
+        self.assertEqual(named - built, set())
 
 
 class Operators(unittest.TestCase):
