@@ -361,6 +361,7 @@ TEST_P(StoppingOf, ASlowPtpStandsAfterMilliseconds) {
     execution.next(Seconds(30));
     EXPECT_GT(execution.stoppingEstimate().time, Seconds(0));
     EXPECT_GT(execution.stoppingEstimate().distance, 0.0);
+    EXPECT_LT(execution.stoppingEstimate().distance, 0.01);  // not the way that is left
     const double speed = execution.current().velocity[0];
     const JointLimits& own = model_.limits(0);
     execution.halt();

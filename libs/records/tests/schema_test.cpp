@@ -74,6 +74,15 @@ TEST_P(NewStore, IsMadeByAnotherServerWhileThisOneLooks) {
     }
 }
 
+TEST_P(NewStore, IsNotChangedByWhoOnlyReads) {
+    const auto url = fresh();
+    ASSERT_TRUE(Store::open(url, Store::Access::write));
+    const auto reader = connect(url, Store::Access::read);
+    ASSERT_TRUE(reader) << reader.error().message;
+    EXPECT_FALSE((*reader)->script("DELETE FROM executions"));
+    EXPECT_TRUE((*reader)->query("SELECT count(*) FROM executions", {}));
+}
+
 /// Executes what metier of the version before has left.
 void makeOldStore(const std::string& file) {
     std::ifstream in(std::string(METIER_RECORDS_TESTS) + "/store_of_version_1.sql");
