@@ -28,6 +28,7 @@ Result<void> ArmCore::attach(std::shared_ptr<SetPointSource> source) {
         return fail(Errc::resource_unavailable, info_.name + ": another source moves the arm");
     }
     owner_ = std::move(source);
+    loss_ = {SafetyState::disconnected, info_.name + ": the connection was lost for a moment"};
     stop_target_.store(nullptr);
     active_.store(owner_.get());
     return {};
@@ -78,6 +79,9 @@ void ArmCore::end(EndCause cause) noexcept {
 
 void ArmCore::setSafety(Safety safety) {
     const std::lock_guard lock(mutex_);  // an attach() sees either state, and end() comes after it
+    if (safety.state != SafetyState::normal) {
+        loss_ = safety;
+    }
     safety_.set(std::move(safety));
 }
 
@@ -98,6 +102,10 @@ void ArmCore::tellEnd() {
         source = std::move(owner_);
         owner_.reset();
         now = safety();
+        const bool lost = cause == EndCause::disconnected || cause == EndCause::safety;
+        if (lost && now.state == SafetyState::normal) {
+            now = loss_;  // it is over already, but ended the motion
+        }
     }
     source->ended(cause, now);
 }

@@ -215,6 +215,23 @@ TEST_F(Core, TellsTheEndWithTheSafetyOfThatMoment) {
     EXPECT_EQ(source.use_count(), 1) << "the core has let go of it";
 }
 
+TEST_F(Core, TellsALossThatIsOverBeforeItsEndIsTold) {
+    core.setSafety({SafetyState::emergency_stop, "robot: pressed long ago"});
+    core.setSafety({});
+    ASSERT_TRUE(core.attach(source));
+    core.setSafety({SafetyState::disconnected, "robot: no joint states for 1000 ms"});
+    core.end(EndCause::disconnected);
+    core.setSafety({});
+    core.dispatch();
+    EXPECT_EQ(source->last.text, "robot: no joint states for 1000 ms");
+
+    ASSERT_TRUE(core.attach(source));
+    core.end(EndCause::disconnected);
+    core.dispatch();
+    EXPECT_EQ(source->last.text, "robot: the connection was lost for a moment");
+    EXPECT_EQ(source->last.state, SafetyState::disconnected);
+}
+
 TEST(SafetyState, HasANameForEach) {
     EXPECT_EQ(toString(SafetyState::normal), "normal");
     EXPECT_EQ(toString(SafetyState::protective_stop), "protective stop");

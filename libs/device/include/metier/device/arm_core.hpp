@@ -93,6 +93,7 @@ private:
 
     std::mutex mutex_;
     std::shared_ptr<SetPointSource> owner_;  // shared with the caller of attach()
+    Safety loss_;  // last state since attach() in which the arm could not move
 };
 
 }  // namespace metier::device
