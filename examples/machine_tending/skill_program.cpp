@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <charconv>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <optional>
@@ -52,7 +53,8 @@ public:
     }
 
     std::string url() const { return server_->endpointUrl(); }
-    void end() { skills_->comeToRest("the program ends", kLongestBraking); }
+    /// \return false if something still moves after kLongestBraking
+    bool end() { return skills_->comeToRest("the program ends", kLongestBraking); }
 
 private:
     /// Makes the skills' types known; they have the parameters and results of the skills.
@@ -100,7 +102,11 @@ int serve(const Device& device, int argc, char** argv) {
     fmt::print("{}\n", server::readyLine(served.url()));
     std::fflush(stdout);
     stop.wait();
-    served.end();
+    if (!served.end()) {
+        fmt::print(stderr, "{}: still moves {} s after it was to brake\n", device.name,
+                   kLongestBraking.count());
+        return 1;
+    }
     return 0;
 }
 

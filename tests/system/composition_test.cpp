@@ -366,15 +366,15 @@ TEST(Graph, IsDrawnAsTextAndTellsWhatSvgNeeds) {
 
 TEST(Graph, OfAServerIsThatOfTheFileThatItsSkillWasMadeOf) {
     const ServerProcess arm = serve("iiwa");
-    const ServerProcess wave = serve("swing", {"--use", "iiwa=" + arm.url()});
-    const auto drawn = runMetier({"graph", wave.url()});
+    const ServerProcess swing = serve("swing", {"--use", "iiwa=" + arm.url()});
+    const auto drawn = runMetier({"graph", swing.url()});
     EXPECT_EQ(drawn.status, 0) << drawn.output;
     const auto file =
         std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "compositions";
     EXPECT_EQ(drawn.output, runMetier({"graph", (file / "swing.toml").string()}).output);
-    EXPECT_EQ(runMetier({"graph", wave.url(), "SwingSkill"}).output, drawn.output);
+    EXPECT_EQ(runMetier({"graph", swing.url(), "SwingSkill"}).output, drawn.output);
 
-    const auto wrong = runMetier({"graph", wave.url(), "WaveSkill"});
+    const auto wrong = runMetier({"graph", swing.url(), "WaveSkill"});
     EXPECT_EQ(wrong.status, 2);
     EXPECT_THAT(wrong.output,
                 HasSubstr("no composed skill WaveSkill; its composed skills: SwingSkill"));

@@ -134,7 +134,7 @@ public:
 
     /// The table of the whole file.
     TomlTable root() const;
-    /// What the file holds, comments included.
+    /// Text of the file, comments included. Valid as long as the file.
     const std::string& content() const noexcept;
     /// Notes an error in a line that only the caller can see; finish() reports it.
     void note(std::uint32_t line, std::string_view what, std::string_view why) const;

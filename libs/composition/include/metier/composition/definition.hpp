@@ -199,7 +199,7 @@ struct Declaration {
 struct Definition {
     /// Name under which it was opened, for messages.
     std::string file{};
-    /// What the file holds, comments included.
+    /// Text of the file, comments included.
     std::string text{};
     /// BrowseNames of the composed skill and of its type, at most 80 bytes.
     std::string name{};
