@@ -1,7 +1,11 @@
 // Servers and a discovery server in processes of their own.
 #include <gmock/gmock.h>
 
+#include <fmt/format.h>
+
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -163,6 +167,101 @@ TEST_F(Find, ListsWhoeverDoesNotAnswerAsSuch) {
     EXPECT_THAT(found.output, HasSubstr(strong_.url()));
     EXPECT_THAT(found.output, HasSubstr("does not answer: "));
     EXPECT_THAT(found.output, HasSubstr("fits"));
+}
+
+/// Two arms and a component that only one of them serves, found by their discovery server.
+class FoundServers : public Find {
+protected:
+    Finished onFound(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.end(), {"--discovery", lds_.url()});
+        return runMetier(arguments);
+    }
+
+    ServerProcess swing_ = serveDiscovered("swing", lds_.url());
+    bool all_known_ = known_ && lds_.awaitKnown("swing");
+};
+
+TEST_F(FoundServers, AreListedAndHalted) {
+    ASSERT_TRUE(all_known_);
+    const auto list = onFound({"list"});
+    EXPECT_EQ(list.status, 0) << list.output;
+    for (const auto* server : {&strong_, &unknown_, &swing_}) {
+        EXPECT_THAT(list.output, HasSubstr("found " + server->url() + " "));
+    }
+    EXPECT_EQ(onFound({"halt"}).status, 0);
+    const auto client = connectTo(unknown_.url());
+    EXPECT_EQ(openSkill(*client, "JointPtpMoveSkill").state(), skill::State::halted);
+}
+
+TEST_F(FoundServers, TheOneThatHasTheSkillRunsIt) {
+    ASSERT_TRUE(all_known_);
+    const auto run = onFound({"run", "SwingSkill", "--set", "Target=0,0.5,0,-1,0,1,0"});
+    EXPECT_EQ(run.status, 0) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("found " + swing_.url() + " swing (" + lds_.url() + ")"));
+    EXPECT_EQ(onFound({"halt", "--skill", "SwingSkill"}).status, 0);
+    EXPECT_EQ(onFound({"reset", "SwingSkill"}).status, 0);
+}
+
+TEST_F(FoundServers, ThatCannotBeToldApartRunNothing) {
+    ASSERT_TRUE(all_known_);
+    const auto refused = onFound({"run", "JointPtpMoveSkill"});
+    EXPECT_EQ(refused.status, 2) << refused.output;
+    EXPECT_THAT(refused.output, HasSubstr("2 servers have JointPtpMoveSkill: name one of "));
+    const auto none = onFound({"run", "WeldSkill"});
+    EXPECT_EQ(none.status, 1) << none.output;
+    EXPECT_THAT(none.output, HasSubstr("no server has WeldSkill; "));
+}
+
+TEST_F(FoundServers, AreWatchedTogether) {
+    ASSERT_TRUE(all_known_);
+    auto watch = link::ChildProcess::start(
+        metierCommand({"watch", "--json", "--count", "2", "--discovery", lds_.url()}),
+        link::ErrorOutput::with_output);
+    ASSERT_TRUE(watch);
+    const auto line = [&watch] { return watch->readLine(inAMinute()).value_or(""); };
+    for (auto text = line(); !text.starts_with("watching "); text = line()) {
+        ASSERT_THAT(text, HasSubstr("found "));
+    }
+    for (const auto* server : {&strong_, &unknown_}) {
+        ASSERT_EQ(runMetier({"halt", server->url(), "--skill", "JointPtpMoveSkill"}).status, 0);
+        const auto seen = nlohmann::json::parse(line());
+        EXPECT_EQ(seen.at("server"), server->url());
+        EXPECT_EQ(seen.at("to"), "Halted");
+    }
+    EXPECT_EQ(watch->waitUntil(inAMinute()), 0);
+}
+
+TEST(FoundServersOfAFolder, AreThoseOfItsCellFile) {
+    const auto port = lastingPort();
+    const auto folder = std::filesystem::path(::testing::TempDir()) / ("cell_of_folder_" + port);
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "cell.toml") << fmt::format(
+        "name = \"here\"\n[[server]]\nname = \"iiwa\"\nkind = \"arm\"\n"
+        "port = {}\ndriver = {{ type = \"simulator\" }}\n"
+        "model = \"{}/models/iiwa7.toml\"\nnodeset = \"iiwa\"\n"
+        "skills = [\"JointPtpMoveSkill\"]\nstall_limit = 2.0\n",
+        port, METIER_SOURCE_DIR);
+    const ServerProcess arm("iiwa", {}, folder / "cell.toml");
+    std::vector<std::string> command{"env", "-C", folder.string()};
+    for (const auto& argument : metierCommand(
+             {"run", "JointPtpMoveSkill", "--set", "TargetJointPosition=0,0.5,0,-1,0,1,0"})) {
+        command.push_back(argument);
+    }
+    const auto run = runToEnd(command);
+    EXPECT_EQ(run.status, 0) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("found " + arm.url() + " iiwa (cell.toml)"));
+    std::filesystem::remove_all(folder);
+}
+
+TEST(FoundServersOfNobody, AreAFailureThatSaysWhereItLooked) {
+    for (const auto& line : std::vector<std::vector<std::string>>{
+             {"list"}, {"run", "AnySkill"}, {"watch"}, {"halt"}, {"square"}, {"pick-place"}}) {
+        auto arguments = line;
+        arguments.insert(arguments.end(), {"--discovery", "opc.tcp://127.0.0.1:1"});
+        const auto refused = runMetier(arguments);
+        EXPECT_EQ(refused.status, 1) << line.front();
+        EXPECT_THAT(refused.output, HasSubstr("discovery server opc.tcp://127.0.0.1:1: "));
+    }
 }
 
 TEST(FindWithoutDiscovery, AsksTheServersThatAreNamed) {

@@ -1,31 +1,64 @@
 #include "servers.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <future>
 #include <utility>
-
-#include "metier/cell/cell.hpp"
 
 namespace metier::app {
 
-void addServerChoice(CLI::App& command, ServerChoice& choice) {
-    command.add_option("url", choice.urls, "Addresses of servers: opc.tcp://host:port");
-    command.add_option("--cell", choice.cell, "Take the servers of this cell file");
+namespace {
+
+/// What one server answers to the question for a skill.
+struct SkillAnswer {
+    opcua::FoundServer server;
+    Result<client::SkillAddress> skill;
+};
+
+/// Asks all servers at the same time: one that does not answer delays none.
+std::vector<SkillAnswer> askFor(const std::string& skill, const CommandIdentity& identity,
+                                const std::vector<opcua::FoundServer>& servers) {
+    const auto ask = [&](const std::string& url) -> Result<client::SkillAddress> {
+        METIER_ASSIGN(const auto client, connectTo(identity, url));
+        return client::findSkill(*client, skill);
+    };
+    std::vector<std::future<Result<client::SkillAddress>>> asked;
+    for (const auto& server : servers) {
+        asked.push_back(std::async(std::launch::async, ask, server.url));
+    }
+    std::vector<SkillAnswer> answers;
+    for (std::size_t i = 0; i < servers.size(); ++i) {
+        answers.push_back({servers[i], asked[i].get()});
+    }
+    return answers;
 }
 
-Result<std::vector<std::string>> addressesOf(const ServerChoice& choice) {
-    auto urls = choice.urls;
-    if (!choice.cell.empty()) {
-        METIER_ASSIGN(const auto cell, cell::loadCell(choice.cell));
-        for (const auto& server : cell.servers) {
-            urls.push_back(fmt::format("opc.tcp://{}:{}", server.address, server.port));
+/// The only server that has the skill.
+/// Errors: not_found with what each server answered; invalid_argument if several have it.
+Result<std::string> serverWith(const SkillChoice& choice, const CommandIdentity& identity) {
+    METIER_ASSIGN(const auto servers, serversOf(choice.servers));
+    std::vector<std::string> with;
+    std::string others;
+    for (const auto& answer : askFor(choice.skill, identity, servers)) {
+        if (answer.skill) {
+            with.push_back(answer.server.url);
+        } else {
+            others += fmt::format("; {}", answer.skill.error().message);
         }
     }
-    if (urls.empty()) {
-        return fail(Errc::invalid_argument, "name a server, or a cell with --cell FILE");
+    if (with.empty()) {
+        return fail(Errc::not_found, fmt::format("no server has {}{}", choice.skill, others));
     }
-    return urls;
+    if (with.size() > 1) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{} servers have {}: name one of {}", with.size(), choice.skill,
+                                fmt::join(with, ", ")));
+    }
+    return with.front();
 }
+
+}  // namespace
 
 SteadyTime deadlineIn(double seconds) {
     return std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -80,11 +113,19 @@ Exit reportOutcome(const opcua::Failure& failure) {
 }
 
 void addSkillChoice(CLI::App& command, SkillChoice& choice) {
-    command.add_option("url", choice.url, "Address of the server: opc.tcp://host:port")->required();
+    command.add_option("url", choice.url,
+                       "Address of the server: opc.tcp://host:port; without it: the one that has "
+                       "the skill");
     command
         .add_option("skill", choice.skill,
                     "Name of the skill, or Controller/Name if several have it")
-        ->required();
+        ->required()
+        ->check([](const std::string& text) {
+            return isAddress(text) ? "name a skill after the address" : "";
+        });
+    command.add_option("--cell", choice.servers.cell,
+                       "Without an address: look among the servers of this cell file");
+    addServerSearch(command, choice.servers);
 }
 
 bool isAddress(const std::string& text) {
@@ -93,10 +134,14 @@ bool isAddress(const std::string& text) {
 
 Result<OpenSkill> openSkill(const CommandIdentity& identity, const SkillChoice& choice,
                             OnLoss on_loss) {
-    METIER_ASSIGN(auto client, connectTo(identity, choice.url, on_loss));
+    auto url = choice.url;
+    if (url.empty()) {
+        METIER_ASSIGN(url, serverWith(choice, identity));
+    }
+    METIER_ASSIGN(auto client, connectTo(identity, url, on_loss));
     METIER_ASSIGN(auto address, client::findSkill(*client, choice.skill));
     METIER_ASSIGN(auto skill, client::SkillHandle::open(*client, std::move(address)));
-    return OpenSkill{std::move(client), std::move(skill)};
+    return OpenSkill{std::move(url), std::move(client), std::move(skill)};
 }
 
 }  // namespace metier::app

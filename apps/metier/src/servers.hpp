@@ -8,20 +8,9 @@
 #include "metier/base/error.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "metier/opcua/client.hpp"
+#include "server_search.hpp"
 
 namespace metier::app {
-
-/// The servers a command talks to: addresses, or those of a cell file.
-struct ServerChoice {
-    std::vector<std::string> urls;
-    std::string cell;
-};
-
-/// Adds the arguments for it to a command.
-void addServerChoice(CLI::App& command, ServerChoice& choice);
-
-/// Errors: invalid_argument if neither addresses nor a cell are given, or the cell is wrong.
-Result<std::vector<std::string>> addressesOf(const ServerChoice& choice);
 
 /// The time when so many seconds are over.
 SteadyTime deadlineIn(double seconds);
@@ -44,10 +33,11 @@ void showConnection(opcua::Client& client);
 /// Prints what became of an execution that did not finish, and gives the exit status for it.
 Exit reportOutcome(const opcua::Failure& failure);
 
-/// One skill of one server, for a command that names both.
+/// One skill of one server, for a command that names both, or only the skill.
 struct SkillChoice {
-    std::string url;
+    std::string url;  ///< empty: that of `servers` which has the skill
     std::string skill;
+    ServerChoice servers{};
 };
 
 /// Adds the arguments for it to a command.
@@ -55,11 +45,13 @@ void addSkillChoice(CLI::App& command, SkillChoice& choice);
 
 /// A skill and the client that leads to it.
 struct OpenSkill {
+    std::string url;
     std::unique_ptr<opcua::Client> client;
     client::SkillHandle skill;  // ends before its client
 };
 
-/// Errors: those of connectTo(), findSkill() and SkillHandle::open().
+/// Errors: those of connectTo(), findSkill(), SkillHandle::open() and, without an address, of
+///         serversOf(); not_found or invalid_argument if none or several servers have the skill.
 Result<OpenSkill> openSkill(const CommandIdentity& identity, const SkillChoice& choice,
                             OnLoss on_loss = OnLoss::fail);
 

@@ -13,12 +13,10 @@
 #include "metier/server/property_wish.hpp"
 #include "metier/server/skill_survey.hpp"
 #include "printable.hpp"
+#include "server_search.hpp"
 
 namespace metier::app {
 namespace {
-
-// Address of a machine's discovery server, by OPC 10000-12.
-constexpr const char* kLocalDiscovery = "opc.tcp://127.0.0.1:4840";
 
 struct FindOptions {
     std::string task;  // a type or a term
@@ -31,13 +29,8 @@ struct FindOptions {
 };
 
 opcua::Sighting searchFor(const FindOptions& options) {
-    auto asked = options.discovery;
-    const bool everywhere = asked.empty() && options.at.empty();
-    if (everywhere) {
-        asked.emplace_back(kLocalDiscovery);
-    }
-    auto sighting =
-        opcua::searchServers(asked, everywhere ? opcua::Mdns::asked : opcua::Mdns::left_out);
+    const bool only_named = options.discovery.empty() && !options.at.empty();
+    auto sighting = only_named ? opcua::Sighting{} : app::searchFor(options.discovery);
     std::vector<opcua::FoundServer> given;
     for (const auto& url : options.at) {
         given.push_back({url, "", "command line"});

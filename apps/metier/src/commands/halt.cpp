@@ -96,7 +96,7 @@ private:
 
 /// All servers at the same time: one that does not answer delays none.
 Result<Exit> runHalt(const HaltOptions& options, const CommandIdentity& identity) {
-    METIER_ASSIGN(const auto urls, asUsage(addressesOf(options.servers)));
+    METIER_ASSIGN(const auto urls, addressesOf(options.servers));
     const auto deadline = deadlineIn(options.timeout);
     std::vector<std::future<Exit>> servers;
     for (const auto& url : urls) {
@@ -122,6 +122,7 @@ void addHalt(CLI::App& app, CommandContext& context) {
         "Halt every skill of some servers, and wait until all stand still. This is not an "
         "emergency stop");
     addServerChoice(*command, options->servers);
+    addServerSearch(*command, options->servers);
     command->add_option("--skill", options->skill, "Only the skill of this name");
     within(command->add_option("--timeout", options->timeout,
                                "Wait so long for standstill, of all together [s]"),

@@ -64,7 +64,7 @@ nlohmann::json jsonOf(const std::string& url, const std::vector<ListedSkill>& sk
 /// Lists the skills of all servers. A server that does not answer is reported, and the others are
 /// listed all the same.
 Result<Exit> runList(const ListOptions& options, const CommandIdentity& identity) {
-    METIER_ASSIGN(const auto urls, asUsage(addressesOf(options.servers)));
+    METIER_ASSIGN(const auto urls, addressesOf(options.servers));
     auto exit = Exit::success;
     auto json = nlohmann::json::array();
     for (const auto& url : urls) {
@@ -91,6 +91,7 @@ void addList(CLI::App& app, CommandContext& context) {
     auto options = std::make_shared<ListOptions>();
     auto* command = app.add_subcommand("list", "List servers, their skills and the skills' states");
     addServerChoice(*command, options->servers);
+    addServerSearch(*command, options->servers);
     command->add_flag("--json", options->json, "Print JSON");
     command->callback(
         [options, &context] { context.exit = exitOf(runList(*options, context.identity)); });

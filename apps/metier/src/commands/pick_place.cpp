@@ -196,7 +196,7 @@ struct PickPlaceOptions {
 };
 
 Result<Exit> runPickPlace(const PickPlaceOptions& options, const CommandIdentity& identity) {
-    METIER_ASSIGN(const auto urls, asUsage(addressesOf(options.servers)));
+    METIER_ASSIGN(const auto urls, addressesOf(options.servers));
     return pickAndPlace(identity, urls, options.settings);
 }
 
@@ -259,6 +259,7 @@ void addPickPlace(CLI::App& app, CommandContext& context) {
         "A skill that somebody else halts is left alone, with the parts that remain.\n"
         "Exit status 1 if a part was not placed.");
     addServerChoice(*command, options->servers);
+    addServerSearch(*command, options->servers);
     addPickPlaceOptions(*command, options->settings);
     command->callback(
         [options, &context] { context.exit = exitOf(runPickPlace(*options, context.identity)); });

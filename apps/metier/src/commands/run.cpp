@@ -74,10 +74,10 @@ Result<skill::ValueMap> parseSettings(const SkillHandle& skill,
 }
 
 /// Prints how to reset a skill that is Halted: until then it runs nothing.
-void showWayOut(SkillHandle& skill, const SkillChoice& choice) {
-    if (skill.state() == skill::State::halted) {
+void showWayOut(OpenSkill& open, const std::string& name) {
+    if (open.skill.state() == skill::State::halted) {
         fmt::print(stderr, "metier: {} is Halted; `metier reset {} {}` makes it Ready\n",
-                   printable(choice.skill), printable(choice.url), printable(choice.skill));
+                   printable(name), printable(open.url), printable(name));
     }
 }
 
@@ -93,7 +93,7 @@ Result<Exit> runRun(const RunOptions& options, const CommandIdentity& identity) 
     METIER_ASSIGN(const auto values, asUsage(parseSettings(skill, options.settings)));
     const auto exit = runSkill(signal, open, values, options.run);
     if (exit == Exit::failed) {
-        showWayOut(skill, options.choice);
+        showWayOut(open, options.choice.skill);
     }
     return exit;
 }

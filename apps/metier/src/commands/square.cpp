@@ -135,7 +135,7 @@ struct SquareOptions {
 };
 
 Result<Exit> runSquareCommand(const SquareOptions& options, const CommandIdentity& identity) {
-    METIER_ASSIGN(const auto urls, asUsage(addressesOf(options.servers)));
+    METIER_ASSIGN(const auto urls, addressesOf(options.servers));
     return moveAlongSquares(identity, urls, options.settings, options.output);
 }
 
@@ -168,6 +168,7 @@ void addSquare(CLI::App& app, CommandContext& context) {
     auto* command = app.add_subcommand(
         "square", "Move every arm of some servers along an upright square, and measure it");
     addServerChoice(*command, options->servers);
+    addServerSearch(*command, options->servers);
     addSquareOptions(*command, options->settings, options->output);
     command->callback([options, &context] {
         context.exit = exitOf(runSquareCommand(*options, context.identity));

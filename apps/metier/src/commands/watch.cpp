@@ -3,7 +3,10 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <utility>
 
 #include "metier/client/skill_handle.hpp"
 #include "metier/link/stop_signal.hpp"
@@ -17,8 +20,7 @@ using client::SkillHandle;
 using skill::TransitionEvent;
 
 struct WatchOptions {
-    std::string url;
-    std::string skill;
+    SkillChoice choice;
     int count = 0;
     bool json = false;
 };
@@ -36,18 +38,23 @@ std::string lineOf(const std::string& skill, const TransitionEvent& event) {
                        event.reason_text);
 }
 
-std::string jsonOf(const std::string& skill, const TransitionEvent& event) {
-    return nlohmann::json{{"time", timeOf(event.time)},      {"skill", skill},
-                          {"from", toString(event.from)},    {"to", toString(event.to)},
-                          {"execution", event.execution_id}, {"reason", toString(event.reason)},
+std::string jsonOf(const std::string& url, const std::string& skill, const TransitionEvent& event) {
+    return nlohmann::json{{"time", timeOf(event.time)},
+                          {"server", url},
+                          {"skill", skill},
+                          {"from", toString(event.from)},
+                          {"to", toString(event.to)},
+                          {"execution", event.execution_id},
+                          {"reason", toString(event.reason)},
                           {"text", event.reason_text}}
         .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-std::string jsonOf(const opcua::ConnectionChange& change) {
+std::string jsonOf(const std::string& url, const opcua::ConnectionChange& change) {
     using Kind = opcua::ConnectionChange::Kind;
     const bool back = change.kind == Kind::back;
     nlohmann::json line{{"time", timeOf(change.time)},
+                        {"server", url},
                         {"connection", back                        ? "back"
                                        : change.kind == Kind::lost ? "lost"
                                                                    : "given up"}};
@@ -60,33 +67,38 @@ std::string jsonOf(const opcua::ConnectionChange& change) {
 }
 
 /// Prints transitions until it has printed enough of them, and what becomes of the connection.
-/// add() on the client's thread.
+/// add() on the threads of the clients.
 class Printer {
 public:
     explicit Printer(const WatchOptions& options) : options_(options), left_(options.count) {}
 
-    void add(const std::string& skill, const TransitionEvent& event) {
+    void add(const std::string& url, const std::string& skill, const TransitionEvent& event) {
+        const std::lock_guard lock(mutex_);
         if (options_.count > 0 && left_ <= 0) {
             return;
         }
-        print(options_.json ? jsonOf(skill, event) : lineOf(skill, event));
+        print(options_.json ? jsonOf(url, skill, event) : lineOf(skill, event));
         if (--left_ == 0 && options_.count > 0) {
             done_ = true;
             news_.ring();
         }
     }
-    void add(const opcua::ConnectionChange& change) {
-        print(options_.json ? jsonOf(change)
-                            : fmt::format("{} {}", timeOf(change.time), textOf(change)));
-        given_up_ = change.kind == opcua::ConnectionChange::Kind::given_up;
-        if (given_up_ || change.server_restarted) {
-            restarted_ = change.server_restarted;
+    void add(const std::string& url, const opcua::ConnectionChange& change) {
+        const std::lock_guard lock(mutex_);
+        print(options_.json ? jsonOf(url, change)
+                            : fmt::format("{} {}: {}", timeOf(change.time), url, textOf(change)));
+        if (change.kind == opcua::ConnectionChange::Kind::given_up) {
+            given_up_ = true;
+            news_.ring();
+        }
+        if (change.server_restarted) {
+            restarted_ = true;
             news_.ring();
         }
     }
 
     /// Waits until enough was printed, a signal came, or the connection was given up, which is a
-    /// failure. `look_again` is called after each restart of the server.
+    /// failure. `look_again` is called after each restart of a server.
     Exit wait(const link::StopSignal& signal, const std::function<void()>& look_again) {
         while (!done_ && !given_up_ && !signal.came()) {
             news_.wait(signal);
@@ -104,6 +116,7 @@ private:
     }
 
     const WatchOptions& options_;
+    std::mutex mutex_;  // guards left_ and the order of lines
     int left_;
     std::atomic<bool> done_ = false;
     std::atomic<bool> given_up_ = false;
@@ -111,31 +124,66 @@ private:
     link::WakeEvent news_;
 };
 
-/// Opens what is to be watched. Errors: those of the server; not_found.
-Result<std::vector<SkillHandle>> openAll(opcua::Client& client, const WatchOptions& options,
-                                         Printer& printer) {
-    METIER_ASSIGN(const auto skills, client::findSkills(client));
-    std::vector<SkillHandle> handles;
-    for (const auto& address : skills) {
-        if (!options.skill.empty() && address.name != options.skill) {
+/// A server whose skills are watched.
+struct WatchedServer {
+    std::unique_ptr<opcua::Client> client;
+    std::vector<SkillHandle> skills{};  // end before their client
+};
+
+/// Opens the skills of a server that are to be watched. Errors: those of the server.
+Result<WatchedServer> open(const std::string& url, const WatchOptions& options, Printer& printer,
+                           const CommandIdentity& identity) {
+    METIER_ASSIGN(auto client, connectTo(identity, url, OnLoss::reconnect));
+    client->onConnectionChange(
+        [&printer, url](const opcua::ConnectionChange& change) { printer.add(url, change); });
+    METIER_ASSIGN(const auto addresses, client::findSkills(*client));
+    WatchedServer server{std::move(client)};
+    for (const auto& address : addresses) {
+        if (!options.choice.skill.empty() && address.name != options.choice.skill) {
             continue;
         }
-        METIER_ASSIGN(auto handle, SkillHandle::open(client, address));
-        handle.onTransition([&printer, name = address.name](const TransitionEvent& event) {
-            printer.add(name, event);
+        METIER_ASSIGN(auto handle, SkillHandle::open(*server.client, address));
+        handle.onTransition([&printer, url, name = address.name](const TransitionEvent& event) {
+            printer.add(url, name, event);
         });
-        handles.push_back(std::move(handle));
+        server.skills.push_back(std::move(handle));
     }
-    if (handles.empty()) {
-        return fail(Errc::not_found, fmt::format("{}: no skill '{}'", options.url, options.skill));
-    }
-    return handles;
+    return server;
 }
 
-void lookAgain(std::vector<SkillHandle>& handles) {
-    for (auto& handle : handles) {
-        if (const auto found = handle.refresh(); !found) {
-            report(found.error());
+/// Opens the named server, or all that are found; of those, one that does not answer is reported
+/// and left out.
+Result<std::vector<WatchedServer>> openAll(const WatchOptions& options, Printer& printer,
+                                           const CommandIdentity& identity) {
+    std::vector<WatchedServer> watched;
+    if (!options.choice.url.empty()) {
+        METIER_ASSIGN(auto server, open(options.choice.url, options, printer, identity));
+        watched.push_back(std::move(server));
+        return watched;
+    }
+    METIER_ASSIGN(const auto urls, addressesOf(options.choice.servers));
+    for (const auto& url : urls) {
+        if (auto server = open(url, options, printer, identity)) {
+            watched.push_back(std::move(*server));
+        } else {
+            report(server.error());
+        }
+    }
+    return watched;
+}
+
+std::size_t numberOfSkills(const std::vector<WatchedServer>& servers) {
+    return std::accumulate(
+        servers.begin(), servers.end(), std::size_t{0},
+        [](std::size_t sum, const auto& one) { return sum + one.skills.size(); });
+}
+
+void lookAgain(std::vector<WatchedServer>& servers) {
+    for (auto& server : servers) {
+        for (auto& handle : server.skills) {
+            if (const auto found = handle.refresh(); !found) {
+                report(found.error());
+            }
         }
     }
 }
@@ -143,12 +191,23 @@ void lookAgain(std::vector<SkillHandle>& handles) {
 Result<Exit> runWatch(const WatchOptions& options, const CommandIdentity& identity) {
     const link::StopSignal signal;
     Printer printer(options);
-    METIER_ASSIGN(const auto client, connectTo(identity, options.url, OnLoss::reconnect));
-    client->onConnectionChange(
-        [&printer](const opcua::ConnectionChange& change) { printer.add(change); });
-    METIER_ASSIGN(auto handles, openAll(*client, options, printer));
-    fmt::print(stderr, "watching {} skills; Ctrl-C ends it\n", handles.size());
-    return printer.wait(signal, [&handles] { lookAgain(handles); });
+    METIER_ASSIGN(auto servers, openAll(options, printer, identity));
+    const auto skills = numberOfSkills(servers);
+    if (skills == 0) {
+        return fail(Errc::not_found,
+                    fmt::format("{}: no skill '{}'",
+                                options.choice.url.empty() ? "these servers" : options.choice.url,
+                                options.choice.skill));
+    }
+    fmt::print(stderr, "watching {} skills; Ctrl-C ends it\n", skills);
+    return printer.wait(signal, [&servers] { lookAgain(servers); });
+}
+
+/// A single argument is an address or a skill's name.
+void sortOut(SkillChoice& choice) {
+    if (choice.skill.empty() && !choice.url.empty() && !isAddress(choice.url)) {
+        choice.skill = std::exchange(choice.url, {});
+    }
 }
 
 }  // namespace
@@ -156,17 +215,22 @@ Result<Exit> runWatch(const WatchOptions& options, const CommandIdentity& identi
 void addWatch(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<WatchOptions>();
-    auto* command = app.add_subcommand(
-        "watch",
-        "Print every transition of a server's skills, and each loss and return of the connection");
-    command->add_option("url", options->url, "Address of the server: opc.tcp://host:port")
-        ->required();
-    command->add_option("skill", options->skill, "Only of the skill of this name");
+    auto* command = app.add_subcommand("watch",
+                                       "Print every transition of the skills of servers, and each "
+                                       "loss and return of a connection");
+    command->add_option("url", options->choice.url,
+                        "Address of the server: opc.tcp://host:port; without it: all servers");
+    command->add_option("skill", options->choice.skill, "Only of the skill of this name");
+    command->add_option("--cell", options->choice.servers.cell,
+                        "Without an address: the servers of this cell file");
+    addServerSearch(*command, options->choice.servers);
     command->add_option("--count", options->count, "End after so many transitions; 0: at Ctrl-C")
         ->check(CLI::NonNegativeNumber);
     command->add_flag("--json", options->json, "Print one JSON object per line");
-    command->callback(
-        [options, &context] { context.exit = exitOf(runWatch(*options, context.identity)); });
+    command->callback([options, &context] {
+        sortOut(options->choice);
+        context.exit = exitOf(runWatch(*options, context.identity));
+    });
 }
 
 }  // namespace metier::app
