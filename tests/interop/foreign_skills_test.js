@@ -188,8 +188,10 @@ compositions = [${skills.map((skill) => `"${skill}.toml"`).join(', ')}]
 servers = ["${url}"]
 stall_limit = 2.0
 `);
-  const component = await startServer(['serve', cell, '--server', 'component', '--port', '0']);
-  return { url: component.url, stop: async () => {
+  const records = path.join(folder, 'records.db');
+  const component = await startServer(
+    ['serve', cell, '--server', 'component', '--port', '0', '--records', records]);
+  return { url: component.url, records, end: component.stop, stop: async () => {
     await component.stop();
     fs.rmSync(folder, { recursive: true });
   } };
@@ -224,10 +226,28 @@ test('a composition runs, halts and loses skills of another maker', async () => 
     const { status, errors } = await lost;
     assert.notStrictEqual(status, 0);
     assert.match(errors, /Whole/);
+    await assertRecorded(component);
   } finally {
     await component.stop();
   }
 });
+
+/** What the component ran is in its records, since the other server keeps none. */
+async function assertRecorded(component) {
+  await component.end();
+  const { output, errors } = await runMetier(
+    ['history', '--records', component.records, '--skill', 'Whole', '--json']);
+  const rows = output.trim().split('\n').map((line) => JSON.parse(line));
+  assert.deepStrictEqual(
+    rows.map(({ state, reason }) => `${state} ${reason}`),
+    ['Lost ServerLost', 'Halted ByClient', 'Halted Error', 'Ready Finished', 'Ready Finished', 'Ready Finished'],
+    errors);
+  assert.deepStrictEqual(rows.map(({ result }) => result && result.Count).slice(3), [3, 2, 1]);
+  for (const row of rows) {
+    assert.match(row.parent, /UseWhole/);
+    assert.strictEqual(typeof row.parameters.Duration, 'number');
+  }
+}
 
 test('the server that dies ends run as unknown', async () => {
   const doomed = await startProcess(process.execPath, [kProgram]);

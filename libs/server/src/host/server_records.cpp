@@ -33,6 +33,7 @@ Result<std::unique_ptr<ServerRecords>> ServerRecords::open(const cell::ServerCon
                                 : ServerAlarm::Kind::over,
                             report.text);
              }}));
+    made->foreign_ = std::make_shared<ForeignRecords>(*made->recorder_);
     return made;
 }
 
@@ -43,6 +44,7 @@ Result<void> ServerRecords::follow(opcua::Server& server,
 
 void ServerRecords::letGo() {
     programs_.clear();
+    foreign_->letGo();
     sampler_.reset();
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/foreign_records.hpp"
 #include "host/server_alarm.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
@@ -46,6 +47,9 @@ public:
     void record(const std::vector<skill::Program*>& programs, const std::string& controller,
                 const MovedDevice& device);
 
+    /// Records of executions that this server starts at others; shared by its used skills.
+    const std::shared_ptr<ForeignRecords>& foreign() const noexcept { return foreign_; }
+
     /// The Programs are about to end: what is under way is over. Waits for nothing.
     void letGo();
 
@@ -57,6 +61,7 @@ private:
     const std::string name_;
     ServerAlarm alarm_;
     std::unique_ptr<records::Recorder> recorder_;
+    std::shared_ptr<ForeignRecords> foreign_;  // shared with used skills
     std::optional<records::PathSampler> sampler_;
     std::vector<std::unique_ptr<records::ProgramRecorder>> programs_;
 };

@@ -123,6 +123,13 @@ SkillHost::~SkillHost() {
     }
 }
 
+std::unique_ptr<composition::UsedSkill> SkillHost::recorded(
+    std::unique_ptr<composition::UsedSkill> used, ForeignPlace place) const {
+    return records_ == nullptr
+               ? std::move(used)
+               : server::recorded(std::move(used), records_->foreign(), std::move(place));
+}
+
 Result<void> SkillHost::start() {
     METIER_TRY(watchPrograms());
     watchStalls();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/announcement.hpp"
+#include "host/foreign_records.hpp"
 #include "host/server_access.hpp"
 #include "host/server_audit.hpp"
 #include "host/server_records.hpp"
@@ -14,6 +15,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
+#include "metier/composition/used_skill.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/link/name_lock.hpp"
 #include "metier/motion/robot_model.hpp"
@@ -81,6 +83,9 @@ public:
     ///         that is not wanted); those of SkillServer.
     Result<void> offerSkills(const opcua::NodeId& folder, const std::vector<std::string>& wanted,
                              std::vector<DeviceSkill> skills);
+    /// Has the executions of a used skill recorded if its server is not one of metier's.
+    std::unique_ptr<composition::UsedSkill> recorded(std::unique_ptr<composition::UsedSkill> used,
+                                                     ForeignPlace place) const;
     /// Halts the skills that are offered by now when the device is lost or stops by itself, at once
     /// if it is so already. The device must outlive this. It is stopped, too, by stopOnStall().
     template <typename Device>

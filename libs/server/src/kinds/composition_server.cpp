@@ -144,16 +144,18 @@ private:
             return fail(std::move(offered.error()));
         }
         auto& remote = *server_.servers_[offered->index];
-        METIER_ASSIGN(auto used, remote.use(offered->address, origin_));
-        used_skills_.emplace(use.alias, std::move(used));
-        note(use.alias, remote, offered->address);
-        return {};
+        return take(use.alias, remote, offered->address);
     }
 
-    void note(const std::string& alias, const client::RemoteServer& remote,
-              const client::SkillAddress& skill) {
+    Result<void> take(const std::string& alias, client::RemoteServer& remote,
+                      const client::SkillAddress& skill) {
+        METIER_ASSIGN(auto used, remote.use(skill, origin_));
+        used_skills_.emplace(
+            alias, server_.host_->recorded(std::move(used),
+                                           {remote.name(), skill.controllerName(), skill.name}));
         remote_.push_back(
             {alias, remote.url(), skill.name, skill.type_name, skill.controllerName()});
+        return {};
     }
 
     /// Others may be starting at this moment.
@@ -186,9 +188,7 @@ private:
             METIER_ASSIGN(auto remote,
                           chosen ? server_.connectFound(*server) : fail(chosen.error()));
             for (const auto& [alias, skill] : *chosen) {
-                METIER_ASSIGN(auto used, remote->use(skill.address, origin_));
-                used_skills_.emplace(alias, std::move(used));
-                note(alias, *remote, skill.address);
+                METIER_TRY(take(alias, *remote, skill.address));
             }
             spdlog::info("{} uses {} ({})", definition_.name, remote->name(), remote->url());
             bindings_.push_back({definition_.name, nullptr, {}, origin_, uses, remote});
@@ -243,7 +243,7 @@ void CompositionServer::keepBound() {
                         .own_server = host_->applicationUri(),
                         .rebind_after = std::chrono::duration<double>(config_.rebind_after),
                         .executor = host_->skills().executor(),
-                        .nodes = host_->nodes()},
+                        .host = *host_},
         std::move(bindings_));
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "host/skill_host.hpp"
 #include "kinds/compositions.hpp"
 #include "kinds/look_times.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
@@ -116,7 +117,11 @@ Result<void> Rebinder::exchange(Exchange& parts, SkillBinding& binding) {
     auto done = onExecutor([this, &parts, &binding]() -> Result<void> {
         auto& used_skills = *parts.used_skills;
         for (auto& [alias, use] : parts.pending) {
-            used_skills.emplace(alias, parts.server->usedSkill(std::move(use)));
+            const auto& address = parts.chosen.at(alias).address;
+            used_skills.emplace(
+                alias, setup_.host.recorded(
+                           parts.server->usedSkill(std::move(use)),
+                           {parts.server->name(), address.controllerName(), address.name}));
         }
         // A server that came back in the meantime stays.
         auto rebound = binding.server->awaySince()
@@ -145,7 +150,7 @@ Result<void> Rebinder::exchange(Exchange& parts, SkillBinding& binding) {
 void Rebinder::show(const Exchange& parts, const SkillBinding& binding) {
     for (const auto& [alias, skill] : parts.chosen) {
         const auto told =
-            opcua_skill::updateUse(setup_.nodes, binding.node,
+            opcua_skill::updateUse(setup_.host.nodes(), binding.node,
                                    {alias, parts.server->url(), skill.address.name,
                                     skill.address.type_name, skill.address.controllerName()});
         if (!told) {

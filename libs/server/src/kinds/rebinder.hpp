@@ -15,10 +15,12 @@
 #include "metier/cell/cell.hpp"
 #include "metier/client/remote_server.hpp"
 #include "metier/composition/sequence_skill.hpp"
-#include "metier/opcua/address_space.hpp"
+#include "metier/opcua/node_id.hpp"
 #include "metier/skill/executor.hpp"
 
 namespace metier::server {
+
+class SkillHost;
 
 /// Uses of one composed skill that one server serves, which was found.
 struct SkillBinding {
@@ -47,7 +49,7 @@ public:
         std::string own_server;        ///< ApplicationUri that executions get as their parent's
         std::chrono::duration<double> rebind_after;  ///< absence of a server [s]
         std::shared_ptr<skill::Executor> executor;   ///< shared by what its thread owns
-        opcua::AddressSpace& nodes;                  ///< nodes of the component
+        SkillHost& host;                             ///< of the component
     };
 
     Rebinder(Setup setup, std::vector<SkillBinding> bindings);
