@@ -6,6 +6,9 @@
 //   GetExecution), in turns. Goal: at most 1 ms more (p50).
 // - three levels: 2 x 5 x 10 steps that do nothing, three composed skills on three servers above
 //   the one that does nothing. Goal: 0.5 s.
+// - per step of a foreign skill, a Program without anything that metier adds: a composed skill of
+//   100 steps, its time by 100, beside open62541 alone that writes the parameter, calls Start,
+//   waits for the events, and reads state and result, in turns. Goal: at most 0.3 ms more (p50).
 //
 // composition_benchmark [ROUNDS]
 #include <fmt/format.h>
@@ -16,11 +19,13 @@
 #include <string>
 #include <vector>
 
+#include "bare.hpp"
 #include "metier/base/queue.hpp"
 #include "metier/client/remote_server.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "metier/composition/definition_file.hpp"
 #include "metier/composition/sequence_skill.hpp"
+#include "metier/opcua/event_emitter.hpp"
 #include "metier/opcua_skill/skill_controller.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/skill/lambda_skill.hpp"
@@ -53,14 +58,14 @@ public:
         orThrow(skills_->publish(place_.skills, std::move(skill)));
         orThrow(server_->start());
     }
-    /// A composed skill whose only used skill is that of `below`.
-    void serveAbove(OneSkillServer& below, const std::string& text) {
-        below_ = orThrow(client::RemoteServer::connect({.url = below.url(), .name = "below"},
-                                                       skills_->executor()));
+    /// A composed skill whose only used skill is that of the server at `below`.
+    void serveAbove(const std::string& below, const std::string& text) {
+        below_ = orThrow(
+            client::RemoteServer::connect({.url = below, .name = "below"}, skills_->executor()));
         auto child = orThrow(below_->use(orThrow(below_->skills()).front(), name_));
         auto composed = orThrow(composition::compose(
             orThrow(composition::parseDefinition(text, name_)), {{"inner", child->description()}}));
-        std::map<std::string, std::unique_ptr<composition::Child>> children;
+        std::map<std::string, std::unique_ptr<composition::UsedSkill>> children;
         children.emplace("inner", std::move(child));
         serve(std::make_unique<composition::SequenceSkill>(std::move(composed), std::move(children),
                                                            skills_->executor(), clock_, name_));
@@ -99,6 +104,111 @@ std::unique_ptr<skill::Skill> idleSkill() {
         std::move(functions));
 }
 
+/// A server of another maker: a Program with a parameter and a result, done as soon as it has
+/// begun.
+class ForeignServer {
+public:
+    ForeignServer() {
+        const auto parameters = object("ParameterSet");
+        const auto level =
+            variable(parameters, {1, "Level"}, opcua::Value::of(0.0), opcua::Access::read_write);
+        const auto reached = variable(object("FinalResultData"), {1, "Reached"},
+                                      opcua::Value::of(0.0), opcua::Access::read);
+        const auto state =
+            variable(program_, {0, "CurrentState"},
+                     opcua::Value::of(opcua::LocalizedText{"", "Ready"}), opcua::Access::read);
+        const auto state_id =
+            variable(state, {0, "Id"}, opcua::Value::of(kReady), opcua::Access::read);
+        orThrow(nodes().addMethod(
+            {.node = {{}, program_, opcua::ids::kHasComponent, {0, "Start"}},
+             .handler = [this, level, reached, state_id](
+                            const auto&, auto) -> Result<std::vector<opcua::Value>> {
+                 METIER_TRY(nodes().write(state_id, opcua::Value::of(kRunning)));
+                 METIER_TRY(raise());
+                 METIER_ASSIGN(const auto wanted, nodes().read(level));
+                 METIER_TRY(nodes().write(reached, wanted.value));
+                 METIER_TRY(nodes().write(state_id, opcua::Value::of(kReady)));
+                 METIER_TRY(raise());
+                 return std::vector<opcua::Value>{};
+             }}));
+        orThrow(server_->start());
+    }
+
+    std::string url() const { return server_->endpointUrl(); }
+
+private:
+    // Ids of the states of Programs (OPC 10000-10).
+    static inline const opcua::NodeId kReady{0, 2400U};
+    static inline const opcua::NodeId kRunning{0, 2402U};
+
+    static opcua::ServerOptions options() {
+        opcua::ServerOptions options;
+        options.port = 0;
+        return options;
+    }
+    opcua::AddressSpace& nodes() { return server_->nodes(); }
+    opcua::NodeId object(const std::string& name) {
+        return orThrow(
+            nodes().addObject({.node = {{}, program_, opcua::ids::kHasComponent, {1, name}}}));
+    }
+    opcua::NodeId variable(const opcua::NodeId& parent, const opcua::QualifiedName& name,
+                           const opcua::Value& value, opcua::Access access) {
+        return orThrow(nodes().addVariable({.node = {{}, parent, opcua::ids::kHasComponent, name},
+                                            .value = value,
+                                            .access = access}));
+    }
+    Result<> raise() {
+        METIER_TRY(emitter_.emit({.source = program_,
+                                  .source_name = "Weld",
+                                  .time = std::chrono::system_clock::now(),
+                                  .severity = 100,
+                                  .message = {"", "Weld"}}));
+        return {};
+    }
+
+    std::unique_ptr<opcua::Server> server_ = orThrow(opcua::Server::create(options()));
+    opcua::NodeId program_ = orThrow(nodes().addObject(
+        {.node = {{}, opcua::ids::kObjectsFolder, opcua::ids::kOrganizes, {1, "Weld"}},
+         .type = opcua::ids::kProgramStateMachineType,
+         .event_notifier = opcua::EventNotifier::subscribable,
+         .children = opcua::Children::none}));
+    opcua::EventEmitter emitter_ =
+        orThrow(opcua::EventEmitter::create(*server_, opcua::ids::kProgramTransitionEventType, {}));
+};
+
+/// The same skill as a client of open62541 alone runs it.
+class BareRunner {
+public:
+    explicit BareRunner(const std::string& url) : client_(url) {
+        client_.subscribe(
+            std::chrono::milliseconds(100), [this] { ++events_; }, "ns=1;s=Weld");
+    }
+
+    /// [ms]
+    double run() {
+        const auto begin = steady_clock::now();
+        events_ = 0;
+        client_.write("ns=1;s=Weld.ParameterSet.Level", kLevel);
+        client_.call("ns=1;s=Weld", "ns=1;s=Weld.Start");
+        while (events_ < 2) {
+            client_.iterate(std::chrono::milliseconds(10));
+            if (steady_clock::now() > begin + std::chrono::seconds(5)) {
+                throw std::runtime_error("no event came");
+            }
+        }
+        if (client_.read("ns=1;s=Weld.FinalResultData.Reached") != kLevel) {
+            throw std::runtime_error("another result than the level");
+        }
+        return std::chrono::duration<double, std::milli>(steady_clock::now() - begin).count();
+    }
+
+private:
+    static constexpr double kLevel = 0.5;
+
+    int events_ = 0;
+    opcua::bare::Client client_;
+};
+
 std::string repeated(const std::string& name, const std::string& inner, int times) {
     return fmt::format(
         "name = \"{}\"\n[results.Number]\ntype = \"number\"\nfrom = \"go.Number\"\n"
@@ -106,6 +216,22 @@ std::string repeated(const std::string& name, const std::string& inner, int time
         "name = \"go\"\nrun = \"inner\"\n",
         name, inner, times);
 }
+
+constexpr const char* kHundredWelds = R"(
+name = "WeldsSkill"
+[results.Number]
+type = "number"
+from = "go.Reached"
+[uses.inner]
+type = "WeldType"
+[[step]]
+name = "all"
+times = 100
+[[step.repeat]]
+name = "go"
+run = "inner"
+with.Level = 0.5
+)";
 
 /// A skill as a client runs it; one that waits as little as possible.
 class Runner {
@@ -139,24 +265,34 @@ void run(int rounds) {
     OneSkillServer idle("idle");
     idle.serve(idleSkill());
     OneSkillServer hundred("hundred");
-    hundred.serveAbove(idle, repeated("HundredSkill", "IdleSkillType", 100));
+    hundred.serveAbove(idle.url(), repeated("HundredSkill", "IdleSkillType", 100));
     OneSkillServer inner("inner");
-    inner.serveAbove(idle, repeated("InnerSkill", "IdleSkillType", 10));
+    inner.serveAbove(idle.url(), repeated("InnerSkill", "IdleSkillType", 10));
     OneSkillServer middle("middle");
-    middle.serveAbove(inner, repeated("MiddleSkill", "InnerSkillType", 5));
+    middle.serveAbove(inner.url(), repeated("MiddleSkill", "InnerSkillType", 5));
     OneSkillServer outer("outer");
-    outer.serveAbove(middle, repeated("OuterSkill", "MiddleSkillType", 2));
+    outer.serveAbove(middle.url(), repeated("OuterSkill", "MiddleSkillType", 2));
+
+    const ForeignServer foreign;
+    OneSkillServer welds("welds");
+    welds.serveAbove(foreign.url(), kHundredWelds);
 
     Runner direct(idle.url());
     Runner composed(hundred.url());
     Runner stacked(outer.url());
+    BareRunner bare(foreign.url());
+    Runner welding(welds.url());
     std::vector<double> alone;
     std::vector<double> step;
     std::vector<double> whole;
+    std::vector<double> bare_runs;
+    std::vector<double> weld;
     for (int round = 0; round < rounds; ++round) {
         for (int i = 0; i < 100; ++i) {
             alone.push_back(direct.run());
+            bare_runs.push_back(bare.run());
         }
+        weld.push_back(welding.run() / 100);
         step.push_back(composed.run() / 100);
         whole.push_back(stacked.run());
     }
@@ -164,6 +300,10 @@ void run(int rounds) {
     fmt::print("a skill run directly             {:8.3f} ms\n", median(alone));
     fmt::print("a step of a composed skill       {:8.3f} ms\n", median(step));
     fmt::print("composing costs, of 1 ms         {:8.3f} ms\n", median(step) - median(alone));
+    fmt::print("a foreign skill, open62541 alone {:8.3f} ms\n", median(bare_runs));
+    fmt::print("a step of a foreign skill        {:8.3f} ms\n", median(weld));
+    fmt::print("the adapter costs, of 0.3 ms     {:8.3f} ms, {:.2f} times\n",
+               median(weld) - median(bare_runs), median(weld) / median(bare_runs));
     fmt::print("three levels, 100 steps, of 500 ms {:6.1f} ms\n", median(whole));
 }
 

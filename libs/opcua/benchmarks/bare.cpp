@@ -191,6 +191,23 @@ Client::~Client() {
 void Client::callNothing() {
     impl_->call(own(kProgram), own(kNothing));
 }
+void Client::write(const std::string& variable, double value) {
+    UA_Variant variant;
+    UA_Variant_setScalar(&variant, &value, &UA_TYPES[UA_TYPES_DOUBLE]);
+    require(UA_Client_writeValueAttribute(impl_->client, ParsedId(variable).id, &variant), "write");
+}
+
+double Client::read(const std::string& variable) {
+    UA_Variant variant;
+    UA_Variant_init(&variant);
+    require(UA_Client_readValueAttribute(impl_->client, ParsedId(variable).id, &variant), "read");
+    const bool number = UA_Variant_hasScalarType(&variant, &UA_TYPES[UA_TYPES_DOUBLE]);
+    const double value = number ? *static_cast<const double*>(variant.data) : 0.0;
+    UA_Variant_clear(&variant);
+    require(number ? UA_STATUSCODE_GOOD : UA_STATUSCODE_BADTYPEMISMATCH, "read");
+    return value;
+}
+
 void Client::writeParameter(double value) {
     UA_Variant variant;
     UA_Variant_setScalar(&variant, &value, &UA_TYPES[UA_TYPES_DOUBLE]);
@@ -207,7 +224,8 @@ void Client::call(const std::string& object, const std::string& method) {
 }
 
 void Client::subscribe(std::chrono::milliseconds publishing_interval,
-                       std::function<void()> on_event) {
+                       std::function<void()> on_event, const std::string& object) {
+    const auto of_other = object.empty() ? nullptr : std::make_unique<ParsedId>(object);
     impl_->on_event = std::move(on_event);
     auto request = UA_CreateSubscriptionRequest_default();
     request.requestedPublishingInterval = static_cast<double>(publishing_interval.count());
@@ -227,7 +245,7 @@ void Client::subscribe(std::chrono::milliseconds publishing_interval,
     filter.selectClauses = &operand;
     UA_MonitoredItemCreateRequest item;
     UA_MonitoredItemCreateRequest_init(&item);
-    item.itemToMonitor.nodeId = own(kProgram);
+    item.itemToMonitor.nodeId = of_other ? of_other->id : own(kProgram);
     item.itemToMonitor.attributeId = UA_ATTRIBUTEID_EVENTNOTIFIER;
     item.monitoringMode = UA_MONITORINGMODE_REPORTING;
     item.requestedParameters.queueSize = 100;

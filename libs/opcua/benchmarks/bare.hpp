@@ -44,12 +44,17 @@ public:
     void callNothing();
     /// Calls a method without arguments of another server. Ids as text, such as `ns=2;i=1`.
     void call(const std::string& object, const std::string& method);
+    /// Writes a number, and waits for the answer. Id as text.
+    void write(const std::string& variable, double value);
+    /// Reads a number. Id as text.
+    double read(const std::string& variable);
     /// Writes a parameter of the first of the added Programs, and waits for the answer.
     void writeParameter(double value);
     /// Calls the Program's Start, which raises two events.
     void callStart();
-    /// Subscribes to the Program's events.
-    void subscribe(std::chrono::milliseconds publishing_interval, std::function<void()> on_event);
+    /// Subscribes to the events of the Program, or of an object of another server, id as text.
+    void subscribe(std::chrono::milliseconds publishing_interval, std::function<void()> on_event,
+                   const std::string& object = {});
     /// Serves the connection until something arrives or the time is over.
     void iterate(std::chrono::milliseconds timeout);
 
