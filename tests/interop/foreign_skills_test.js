@@ -29,8 +29,16 @@ test('list shows every Program with its state', async () => {
   const { status, output } = await runMetier(['list', server.url]);
   assert.strictEqual(status, 0);
   for (const name of kSkills) {
-    assert.match(output, new RegExp(`${name} +Ready`));
+    assert.match(output, new RegExp(`${name} +Ready +no atomic start, no dead-man`));
   }
+});
+
+test('run and find say what another maker\'s skill cannot have', async () => {
+  const { status, errors } = await run('Whole', '--set', 'Duration=0.05');
+  assert.strictEqual(status, 0, errors);
+  assert.match(errors, /Whole has no atomic start \(another client may write .*\), no dead-man/);
+  const found = await runMetier(['find', 'ProgramStateMachineType', '--at', server.url]);
+  assert.match(found.output, /Whole fits: .*, no atomic start, no dead-man/);
 });
 
 for (const skill of kSkills) {

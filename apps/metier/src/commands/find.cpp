@@ -54,6 +54,9 @@ std::vector<std::string> reasonsOf(const server::SurveyedSkill& skill,
     }
     reasons.push_back(fmt::format("type {}", fmt::join(skill.types, " < ")));
     reasons.insert(reasons.end(), verdict.reasons.begin(), verdict.reasons.end());
+    if (!skill.lacks.empty()) {
+        reasons.push_back(textOf(skill.lacks));
+    }
     return reasons;
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "metier/client/lack.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "metier/opcua/text.hpp"
@@ -22,6 +23,7 @@ struct ListedSkill {
     std::string name;
     std::string type;
     std::string state;
+    std::vector<client::Lack> lacks;
 };
 
 Result<std::vector<ListedSkill>> listSkills(const CommandIdentity& identity,
@@ -34,8 +36,9 @@ Result<std::vector<ListedSkill>> listSkills(const CommandIdentity& identity,
         const auto value = state ? client->read(*state) : opcua::Answer<opcua::Value>();
         const auto text =
             value ? value->as<opcua::LocalizedText>() : Result<opcua::LocalizedText>();
+        METIER_ASSIGN(auto lacks, client::readLacks(*client, skill));
         listed.push_back({skill.controllerName(), skill.name, skill.type_name,
-                          text ? opcua::sanitise(text->text) : "unknown"});
+                          text ? opcua::sanitise(text->text) : "unknown", std::move(lacks)});
     }
     return listed;
 }
@@ -43,11 +46,20 @@ Result<std::vector<ListedSkill>> listSkills(const CommandIdentity& identity,
 void print(const std::string& url, const std::vector<ListedSkill>& skills) {
     fmt::print("{}\n", url);
     for (const auto& skill : skills) {
-        fmt::print("  {:<18} {:<28} {}\n", skill.controller, skill.name, skill.state);
+        fmt::print("  {:<18} {:<28} {:<10}{}\n", skill.controller, skill.name, skill.state,
+                   skill.lacks.empty() ? "" : " " + textOf(skill.lacks));
     }
     if (skills.empty()) {
         fmt::print("  no skills\n");
     }
+}
+
+std::vector<std::string_view> namesOf(const std::vector<client::Lack>& lacks) {
+    std::vector<std::string_view> names;
+    for (const auto lack : lacks) {
+        names.push_back(toString(lack));
+    }
+    return names;
 }
 
 nlohmann::json jsonOf(const std::string& url, const std::vector<ListedSkill>& skills) {
@@ -56,7 +68,8 @@ nlohmann::json jsonOf(const std::string& url, const std::vector<ListedSkill>& sk
         list.push_back({{"controller", skill.controller},
                         {"skill", skill.name},
                         {"type", skill.type},
-                        {"state", skill.state}});
+                        {"state", skill.state},
+                        {"lacks", namesOf(skill.lacks)}});
     }
     return {{"url", url}, {"skills", list}};
 }

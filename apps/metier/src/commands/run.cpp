@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "metier/client/lack.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "printable.hpp"
 #include "skill_run.hpp"
@@ -91,6 +92,10 @@ Result<Exit> runRun(const RunOptions& options, const CommandIdentity& identity) 
         return Exit::success;
     }
     METIER_ASSIGN(const auto values, asUsage(parseSettings(skill, options.settings)));
+    if (const auto lacks = skill.lacks(); !lacks.empty()) {
+        fmt::print(stderr, "metier: {} has {}\n", printable(options.choice.skill),
+                   explanationOf(lacks));
+    }
     const auto exit = runSkill(signal, open, values, options.run);
     if (exit == Exit::failed) {
         showWayOut(open, options.choice.skill);

@@ -85,6 +85,7 @@ public:
         SurveyedSkill skill{std::move(address), type_terms->types, std::move(own->terms),
                             type_terms->facts, std::move(own->uses)};
         append(skill.terms, type_terms->terms);
+        METIER_ASSIGN(skill.lacks, client::readLacks(client_, skill.address));
         if (const auto* controller = skill.address.controller()) {
             const auto [arm, is_new] = arms_.try_emplace(controller->node);
             if (is_new) {

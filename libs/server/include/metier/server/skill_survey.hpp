@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
+#include "metier/client/lack.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/client/skill_references.hpp"
 #include "metier/opcua/search.hpp"
@@ -46,6 +47,8 @@ struct SurveyedSkill {
     std::vector<client::SkillUse> uses{};
     /// Figures of the arm that it moves itself.
     ArmFigures arm{};
+    /// What a run of it cannot have, since its server is of another maker.
+    std::vector<client::Lack> lacks{};
 };
 
 /// A server that was asked for its skills.
