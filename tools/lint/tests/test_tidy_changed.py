@@ -1,5 +1,6 @@
 """Which files clang-tidy is run over, and what becomes of its findings."""
 
+import json
 import sys
 import tempfile
 import unittest
@@ -20,14 +21,20 @@ class SourcesTest(unittest.TestCase):
             self.assertEqual(tidy_changed.sources(lines, root), ["b.cpp", "c.cpp", "a.cpp"])
 
 
+class LineFilterTest(unittest.TestCase):
+    def test_names_changed_sources_and_headers(self):
+        lines = {"libs/b.hpp": 1, "libs/a.cpp": 2, "README.md": 3}
+        self.assertEqual(json.loads(tidy_changed.line_filter(lines)), [{"name": "/libs/a.cpp"}, {"name": "/libs/b.hpp"}])
+
+
 class CheckTest(unittest.TestCase):
     def test_collects_the_findings(self):
-        with mock.patch.object(tidy_changed, "tidy", side_effect=lambda name: "bad" if name == "b.cpp" else ""):
-            self.assertEqual(tidy_changed.check(["a.cpp", "b.cpp"], 1.0), (["bad"], 0))
+        with mock.patch.object(tidy_changed, "tidy", side_effect=lambda name, _: "bad" if name == "b.cpp" else ""):
+            self.assertEqual(tidy_changed.check(["a.cpp", "b.cpp"], 1.0, "[]"), (["bad"], 0))
 
     def test_begins_no_file_after_its_time(self):
         with mock.patch.object(tidy_changed, "tidy") as tidy:
-            self.assertEqual(tidy_changed.check(["a.cpp", "b.cpp"], 0.0), ([], 2))
+            self.assertEqual(tidy_changed.check(["a.cpp", "b.cpp"], 0.0, "[]"), ([], 2))
             tidy.assert_not_called()
 
 
