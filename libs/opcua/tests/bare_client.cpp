@@ -85,9 +85,13 @@ StatusCode BareClient::closeSessionWithoutSubscriptions() {
 }
 
 DataValue BareClient::read(const NodeId& variable) {
+    return readAttribute(variable, UA_ATTRIBUTEID_VALUE);
+}
+
+DataValue BareClient::readAttribute(const NodeId& node, std::uint32_t attribute) {
     UA_ReadValueId item{};
-    item.nodeId = viewOf(variable);
-    item.attributeId = UA_ATTRIBUTEID_VALUE;
+    item.nodeId = viewOf(node);
+    item.attributeId = attribute;
     UA_ReadRequest request{};
     request.nodesToRead = &item;
     request.nodesToReadSize = 1;
@@ -98,6 +102,12 @@ DataValue BareClient::read(const NodeId& variable) {
         return {Value(), StatusCode(response->responseHeader.serviceResult), {}, {}};
     }
     return fromNative(response->results[0]);
+}
+
+std::optional<bool> BareClient::readExecutable(const NodeId& method) {
+    UA_Boolean executable = false;
+    const auto code = UA_Client_readExecutableAttribute(client_, viewOf(method), &executable);
+    return code == UA_STATUSCODE_GOOD ? std::optional(executable) : std::nullopt;
 }
 
 std::optional<bool> BareClient::readUserExecutable(const NodeId& method) {
@@ -111,15 +121,10 @@ StatusCode BareClient::write(const NodeId& variable, const Value& value) {
         UA_Client_writeValueAttribute(client_, viewOf(variable), &ValueAccess::native(value)));
 }
 
-StatusCode BareClient::writeWithStatus(const NodeId& variable, const Value& value,
-                                       StatusCode quality) {
-    UA_WriteValue item{};
+StatusCode BareClient::writeItem(const NodeId& variable, UA_WriteValue item) {
     item.nodeId = viewOf(variable);
     item.attributeId = UA_ATTRIBUTEID_VALUE;
     item.value.hasValue = true;
-    item.value.value = ValueAccess::native(value);
-    item.value.hasStatus = true;
-    item.value.status = quality.value();
     UA_WriteRequest request{};
     request.nodesToWrite = &item;
     request.nodesToWriteSize = 1;
@@ -127,6 +132,34 @@ StatusCode BareClient::writeWithStatus(const NodeId& variable, const Value& valu
                                      UA_TYPES[UA_TYPES_WRITERESPONSE]);
     return StatusCode(response->resultsSize == 1 ? response->results[0]
                                                  : response->responseHeader.serviceResult);
+}
+
+StatusCode BareClient::writeWithStatus(const NodeId& variable, const Value& value,
+                                       StatusCode quality) {
+    UA_WriteValue item{};
+    item.value.value = ValueAccess::native(value);
+    item.value.hasStatus = true;
+    item.value.status = quality.value();
+    return writeItem(variable, item);
+}
+
+StatusCode BareClient::writeWithTime(const NodeId& variable, const Value& value, UtcTime source,
+                                     UtcTime server) {
+    UA_WriteValue item{};
+    item.value.value = ValueAccess::native(value);
+    item.value.hasSourceTimestamp = source != UtcTime{};
+    item.value.sourceTimestamp = nativeTime(source);
+    item.value.hasServerTimestamp = server != UtcTime{};
+    item.value.serverTimestamp = nativeTime(server);
+    return writeItem(variable, item);
+}
+
+StatusCode BareClient::writePart(const NodeId& variable, const Value& value,
+                                 const std::string& range) {
+    UA_WriteValue item{};
+    item.value.value = ValueAccess::native(value);
+    item.indexRange = viewOf(range);
+    return writeItem(variable, item);
 }
 
 BareClient::CallResult BareClient::call(const NodeId& object, const NodeId& method,
@@ -194,7 +227,13 @@ BareClient::FilterResult BareClient::watchEvents(const NodeId& notifier, BareFil
 
 StatusCode BareClient::watchValue(const NodeId& variable, double sampling_ms,
                                   std::vector<DataValue>& into) {
-    auto item = UA_MonitoredItemCreateRequest_default(viewOf(variable));
+    return watchAttribute(variable, UA_ATTRIBUTEID_VALUE, sampling_ms, into);
+}
+
+StatusCode BareClient::watchAttribute(const NodeId& node, std::uint32_t attribute,
+                                      double sampling_ms, std::vector<DataValue>& into) {
+    auto item = UA_MonitoredItemCreateRequest_default(viewOf(node));
+    item.itemToMonitor.attributeId = attribute;
     item.requestedParameters.samplingInterval = sampling_ms;
     item.requestedParameters.queueSize = 100;
     Owned<UA_MonitoredItemCreateResult> result(

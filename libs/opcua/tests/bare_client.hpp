@@ -39,10 +39,18 @@ public:
     StatusCode closeSessionWithoutSubscriptions();
 
     DataValue read(const NodeId& variable);
+    /// Reads an attribute by its number.
+    DataValue readAttribute(const NodeId& node, std::uint32_t attribute);
+    std::optional<bool> readExecutable(const NodeId& method);
     std::optional<bool> readUserExecutable(const NodeId& method);
     StatusCode write(const NodeId& variable, const Value& value);
     /// With a StatusCode, also if it is Good.
     StatusCode writeWithStatus(const NodeId& variable, const Value& value, StatusCode quality);
+    /// With a time of the client's own.
+    StatusCode writeWithTime(const NodeId& variable, const Value& value, UtcTime source,
+                             UtcTime server);
+    /// Writes a part of an array: "1" or "0:1".
+    StatusCode writePart(const NodeId& variable, const Value& value, const std::string& range);
     struct CallResult {
         StatusCode status;
         std::vector<Value> outputs;
@@ -64,11 +72,16 @@ public:
     FilterResult watchEvents(const NodeId& notifier, BareFilter& filter,
                              std::vector<ReceivedEvent>& into);
     StatusCode watchValue(const NodeId& variable, double sampling_ms, std::vector<DataValue>& into);
+    StatusCode watchAttribute(const NodeId& node, std::uint32_t attribute, double sampling_ms,
+                              std::vector<DataValue>& into);
     /// Handles what comes until `done` or the deadline. \return done
     bool runUntil(const std::function<bool()>& done,
                   std::chrono::milliseconds deadline = kDeadline);
 
 private:
+    /// `item` needs all but the node and the attribute, which is Value.
+    StatusCode writeItem(const NodeId& variable, UA_WriteValue item);
+
     UA_Client* client_;
     UA_UInt32 subscription_ = 0;
 };

@@ -139,6 +139,7 @@ TEST_F(NodesetLoading, ServesItsNodesToClients) {
     EXPECT_EQ(client.write(lamp, Value::of(false)), status::kGood);
     EXPECT_EQ(client.read(lamp).value.as<bool>(), false);
     EXPECT_EQ(client.read(id(22)).status.name(), "BadWaitingForInitialData");
+    EXPECT_EQ(client.readExecutable(id(12)), false);
     EXPECT_EQ(client.readUserExecutable(id(12)), false);
     EXPECT_EQ(client.call(id(20), id(12), {}).status.name(), "BadNotExecutable");
 }

@@ -27,6 +27,7 @@ public:
     Owned& operator=(const Owned&) = delete;
 
     Native* get() noexcept { return &value_; }
+    const Native* get() const noexcept { return &value_; }
     Native& operator*() noexcept { return value_; }
     Native* operator->() noexcept { return &value_; }
 

@@ -100,6 +100,22 @@ const UA_DataType* simpleType(const NodeId& id) {
 
 }  // namespace
 
+const UA_EnumDefinition* DataTypeStore::enumeration(const NodeId& data_type) const noexcept {
+    const auto found = enumerations_.find(data_type);
+    return found == enumerations_.end() ? nullptr : found->second.get();
+}
+
+std::span<UA_EnumField> DataTypeStore::defineEnumeration(const NodeId& data_type,
+                                                         std::size_t fields) {
+    auto& definition =
+        *enumerations_.try_emplace(data_type, UA_TYPES[UA_TYPES_ENUMDEFINITION]).first->second;
+    UA_clear(&definition, &UA_TYPES[UA_TYPES_ENUMDEFINITION]);  // of a file that was refused
+    definition.fields = static_cast<UA_EnumField*>(
+        checkAllocated(UA_Array_new(fields, &UA_TYPES[UA_TYPES_ENUMFIELD])));
+    definition.fieldsSize = fields;
+    return {definition.fields, fields};
+}
+
 bool isStructured(const UA_DataType& type) noexcept {
     return type.typeKind == UA_DATATYPEKIND_STRUCTURE ||
            type.typeKind == UA_DATATYPEKIND_OPTSTRUCT || type.typeKind == UA_DATATYPEKIND_UNION;

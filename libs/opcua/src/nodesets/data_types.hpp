@@ -4,23 +4,31 @@
 
 #include <deque>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "common/convert.hpp"
 #include "metier/opcua/node_id.hpp"
 #include "nodesets/nodeset_ids.hpp"
 #include "nodesets/type_tree.hpp"
 
 namespace metier::opcua {
 
-/// Structures of the NodeSet files of one server, as the stack describes types. Must outlive the
-/// server, which keeps pointers into it.
+/// Data types of one server: structures of its NodeSet files, as the stack describes types, and
+/// enumerations, which the stack (1.4) does not describe. Must outlive the server, which keeps
+/// pointers into it.
 class DataTypeStore {
 public:
     DataTypeStore() = default;
     DataTypeStore(const DataTypeStore&) = delete;
     DataTypeStore& operator=(const DataTypeStore&) = delete;
+
+    /// Definition of an enumeration; null if there is none.
+    const UA_EnumDefinition* enumeration(const NodeId& data_type) const noexcept;
+    /// Empty fields of an enumeration that has no definition yet, for the caller to fill.
+    std::span<UA_EnumField> defineEnumeration(const NodeId& data_type, std::size_t fields);
 
 private:
     friend class DataTypeBuilder;
@@ -34,6 +42,7 @@ private:
         std::optional<UA_DataTypeArray> array;  ///< the link of the server's chain
     };
     std::deque<Group> groups_;
+    std::unordered_map<NodeId, Owned<UA_EnumDefinition>> enumerations_;
 };
 
 /// Whether it is a structure, with or without optional fields, or a union.

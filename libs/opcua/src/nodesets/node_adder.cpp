@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/closed_methods.hpp"
 #include "common/convert.hpp"
 #include "metier/base/text.hpp"
 #include "metier/opcua/standard_ids.hpp"
@@ -13,16 +14,6 @@
 namespace metier::opcua {
 
 namespace {
-
-/// Without it a call is BadInternalError; a session does not come here, since it may not call.
-UA_StatusCode withoutWork(UA_Server* /*server*/, const UA_NodeId* /*session_id*/,
-                          void* /*session_context*/, const UA_NodeId* /*method*/,
-                          void* /*method_context*/, const UA_NodeId* /*object*/,
-                          void* /*object_context*/, std::size_t /*inputs_size*/,
-                          const UA_Variant* /*inputs*/, std::size_t /*outputs_size*/,
-                          UA_Variant* /*outputs*/) {
-    return UA_STATUSCODE_BADNOTIMPLEMENTED;
-}
 
 bool isThere(UA_Server* server, const NodeId& id) {
     void* context = nullptr;
@@ -194,12 +185,9 @@ Read NodeAdder::add(const NodeElement& node) const {
             return addVariable(node);
         case UA_NODECLASS_METHOD: {
             // Nobody may call it until a program gives it work.
-            auto attributes = described(node, UA_MethodAttributes_default);
-            attributes.executable = node.element.attribute("Executable").as_bool(true);
-            attributes.userExecutable = attributes.executable;
+            const auto attributes = described(node, UA_MethodAttributes_default);
             METIER_TRY(begin(node, attributes, UA_TYPES_METHODATTRIBUTES));
-            return refusedUnlessGood(node, UA_Server_setMethodNodeCallback(
-                                               context_.server, viewOf(node.id), withoutWork));
+            return refusedUnlessGood(node, closeMethod(context_.server, viewOf(node.id)));
         }
         case UA_NODECLASS_OBJECTTYPE: {
             auto attributes = described(node, UA_ObjectTypeAttributes_default);

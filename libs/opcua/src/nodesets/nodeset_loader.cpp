@@ -10,6 +10,7 @@
 #include "common/convert.hpp"
 #include "metier/opcua/standard_ids.hpp"
 #include "metier/opcua/text.hpp"
+#include "nodesets/enum_definitions.hpp"
 #include "nodesets/node_adder.hpp"
 #include "nodesets/node_elements.hpp"
 
@@ -125,6 +126,7 @@ Result<> NodesetLoader::load(const NodesetFile& file) {
     for (const auto& refused : types.build(all.data_types, ids)) {
         notes_.push_back(fmt::format("{}: values are not taken apart: {}", file.name(), refused));
     }
+    defineEnumerations(all.data_types, tree, store_);
     const XmlValues values(ids, types, [&](const NodeId& id) {
         const auto known = all.encoded_types.find(id);
         return known != all.encoded_types.end() ? known->second

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "common/closed_methods.hpp"
 #include "common/convert.hpp"
 #include "metier/opcua/text.hpp"
 #include "nodesets/nodeset_file.hpp"
@@ -89,13 +90,16 @@ UA_StatusCode add(UA_Server* server, const NewNode& node, const VariableSpec& sp
     return finish(server, begun, node.id, spec.children);
 }
 
-/// Adds a Method without arguments.
+/// Adds a Method without arguments and without work.
 UA_StatusCode addBareMethod(UA_Server* server, const NewNode& node) {
-    auto attributes = node.describe(UA_MethodAttributes_default);
-    attributes.executable = true;
-    return UA_Server_addMethodNode(server, viewOf(node.id), node.parent, node.reference,
-                                   node.browse_name, attributes, nullptr, 0, nullptr, 0, nullptr,
-                                   nullptr, nullptr);
+    const auto attributes = node.describe(UA_MethodAttributes_default);
+    return inOrder(
+        [&] {
+            return UA_Server_addMethodNode(server, viewOf(node.id), node.parent, node.reference,
+                                           node.browse_name, attributes, nullptr, 0, nullptr, 0,
+                                           nullptr, nullptr, nullptr);
+        },
+        [&] { return closeMethod(server, viewOf(node.id)); });
 }
 
 /// Adds the Property of a Method that describes its arguments; none, if there are none.
@@ -375,10 +379,13 @@ Result<> AddressSpace::setAccess(const NodeId& variable, Access access) {
 }
 
 Result<> AddressSpace::setMethod(const NodeId& method, MethodHandler handler, MethodEffect effect) {
-    METIER_ASSIGN(auto hooks, core_.hooks().of(core_.native(), method));
+    UA_Server* server = core_.native();
+    METIER_ASSIGN(auto hooks, core_.hooks().of(server, method));
+    const bool has_work = static_cast<bool>(handler);
     hooks->methodHooks().handler = std::move(handler);
     hooks->methodHooks().effect = effect;
-    return outcome(UA_Server_setMethodNodeCallback(core_.native(), viewOf(method), callMethod),
+    return outcome(has_work ? openMethod(server, viewOf(method), callMethod)
+                            : closeMethod(server, viewOf(method)),
                    "give work to", method);
 }
 

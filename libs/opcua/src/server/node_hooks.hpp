@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "metier/opcua/address_space.hpp"
+#include "server/kept_values.hpp"
 
 namespace metier::opcua {
 
@@ -22,7 +23,7 @@ struct MethodHooks {
 /// Functions of a node; the stack keeps a pointer to them as the node's context.
 struct NodeHooks {
     ServerCore* core = nullptr;
-    std::variant<std::monostate, MethodHooks, DataSource> work;
+    std::variant<std::monostate, MethodHooks, DataSource, KeptValue> work;
 
     MethodHooks& methodHooks() {
         return std::holds_alternative<MethodHooks>(work) ? std::get<MethodHooks>(work)

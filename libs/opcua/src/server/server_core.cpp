@@ -4,11 +4,13 @@
 
 #include <algorithm>
 
+#include "common/closed_methods.hpp"
 #include "common/convert.hpp"
 #include "common/guard.hpp"
 #include "common/security_config.hpp"
 #include "metier/opcua/text.hpp"
 #include "nodesets/nodeset_loader.hpp"
+#include "server/enum_properties.hpp"
 #include "server/event_types.hpp"
 #include "server/nodesets.hpp"
 #include "server/server_config.hpp"
@@ -125,6 +127,7 @@ Result<> ServerCore::build() {
     METIER_TRY(checkPeers());
     METIER_TRY(applyOptions(options_, peers_.get(), config));
     sessions_.install(config);
+    definition_reads_.install(config.nodestore);
     config.accessControl.getUserExecutable = userExecutable;
     config.nodeLifecycle.constructor = Callbacks::nodeMade;
     config.nodeLifecycle.destructor = Callbacks::nodeDeleted;
@@ -158,13 +161,19 @@ Result<> ServerCore::build() {
                                 {[](const Session&) { return DataValue{Value::of(true)}; }});
 }
 
-/// Adds the nodes of the NodeSets: first those that are compiled in, also for the files.
+/// Adds the nodes of the NodeSets: first those that are compiled in, also for the files. Their
+/// Methods wait for work.
 Result<> ServerCore::loadNodes() {
     METIER_ASSIGN(const auto files, readNodesetFiles(options_.nodeset_files));
     auto names = options_.nodesets;
     names.insert(names.end(), files.needed.begin(), files.needed.end());
     METIER_TRY(loadNodesets(native(), names));
-    return loadNodesetFiles(native(), files, data_types_, log());
+    METIER_TRY(loadNodesetFiles(native(), files, data_types_, log()));
+    METIER_TRY(defineByProperties(nodes_, data_types_));
+    const auto closed = closeIdleMethods(native());
+    return closed == UA_STATUSCODE_GOOD
+               ? Result<>()
+               : fail(errorFrom(StatusCode(closed), "close the Methods without work"));
 }
 
 Result<> ServerCore::addNodes(const NodesetFile& file) {
@@ -173,7 +182,7 @@ Result<> ServerCore::addNodes(const NodesetFile& file) {
     for (const auto& note : loader.notes()) {
         log().warn("{}", note);
     }
-    return {};
+    return defineByProperties(nodes_, data_types_);
 }
 
 /// Installs the check of peers' certificates; for a closed server.

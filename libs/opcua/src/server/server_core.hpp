@@ -18,6 +18,7 @@
 #include "nodesets/data_types.hpp"
 #include "nodesets/nodeset_file.hpp"
 #include "server/audit_trail.hpp"
+#include "server/definition_reads.hpp"
 #include "server/event_watch.hpp"
 #include "server/node_hooks.hpp"
 #include "server/pending_timers.hpp"
@@ -106,11 +107,12 @@ private:
     std::unique_ptr<PeerCheck> peers_;  ///< of a closed server
     EventWatch watch_;
     std::unordered_map<NodeId, ConnectionId> seats_;  ///< connection on which each Session is used
+    DataTypeStore data_types_;  ///< outlives the server and the hooks, which point into it
     HookRegistry hooks_;
     StackMethods stack_methods_;
     AddressSpace nodes_;
     std::unordered_map<NodeId, std::vector<NodeId>> notifiers_;
-    DataTypeStore data_types_;  ///< outlives the server, which points into it
+    DefinitionReads definition_reads_{data_types_};  ///< outlives the server, which points into it
     std::unique_ptr<UA_Server, DeleteServer> server_;
     std::shared_ptr<PendingTimers> timers_;  ///< shared for the weak pointers of handles
     AuditTrail audit_;

@@ -89,8 +89,24 @@ struct Sessions::Callbacks {
         if (for_auditors && context != nullptr && !mayAudit(owner(control).of(context).role)) {
             return 0;
         }
-        return context == nullptr || mayCommand(owner(control).of(context).role) ? kAllAccess
-                                                                                 : kReadAccess;
+        if (context == nullptr) {
+            return kAllAccess;
+        }
+        return mayCommand(owner(control).of(context).role) && isData(server, *node, node_context)
+                   ? kAllAccess
+                   : kReadAccess;
+    }
+    /// Whether a node is not the declaration of a type. A value that no program serves is kept by
+    /// the server from here on, which is asked before each read and write of a client.
+    static bool isData(UA_Server* server, const UA_NodeId& node,
+                       const void* node_context) noexcept {
+        auto storage = Storage::elsewhere;
+        const auto code = guarded([&] {
+            if (node_context == nullptr) {
+                storage = keepValueOf(ServerCore::of(server), fromNative(node));
+            }
+        });
+        return code == UA_STATUSCODE_GOOD && storage != Storage::declared;
     }
     /// Whether a node belongs to the diagnostics of a session, which the stack keeps in namespace
     /// 1. If a Subscription that has outlived its session asks for them, the stack would use a

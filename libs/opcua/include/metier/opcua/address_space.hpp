@@ -135,7 +135,7 @@ struct MethodSpec {
     std::vector<Argument> inputs{};
     /// Results of a call, in order; the Property OutputArguments.
     std::vector<Argument> outputs{};
-    /// Work of the Method.
+    /// Work of the Method; empty: nobody may call it, see AddressSpace::setMethod().
     MethodHandler handler{};
 };
 
@@ -268,8 +268,8 @@ public:
     /// Changes whether clients may write a Variable; mind that a DataSource without `write`
     /// refuses.
     Result<> setAccess(const NodeId& variable, Access access);
-    /// Sets the work of a Method. For a Method node that several Objects share, the context has the
-    /// Object.
+    /// Sets the work of a Method; without work it is not Executable, and a call is refused. For a
+    /// Method node that several Objects share, the context has the Object.
     /// \param effect right that callers need, and whether calls are audited
     Result<> setMethod(const NodeId& method, MethodHandler handler,
                        MethodEffect effect = MethodEffect::commands);
