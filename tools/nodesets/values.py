@@ -25,6 +25,7 @@ UNITS = {
     "rad/s³": ("", "radian per second cubed"),
     "kg": ("KGM", "kilogram"),
     "kg·m²": ("B32", "kilogram metre squared"),
+    "°C": ("CEL", "degree Celsius"),
     "%": ("P1", "per cent"),
     "1": ("C62", "one"),
 }

@@ -6,6 +6,7 @@
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/values.hpp"
 #include "model_ids.hpp"
+#include "robot_values.hpp"
 #include "value_part.hpp"
 
 namespace metier::opcua_skill {
@@ -155,7 +156,8 @@ Result<void> publishKinematics(AddressSpace& nodes, const MotionDeviceSystem& sy
     if (data.payload > 0) {
         METIER_TRY(setPayload(nodes, system.motion_device, data.payload));
     }
-    return wireAxes(nodes, kinematics, system.motion_device, state);
+    METIER_TRY(wireAxes(nodes, kinematics, system.motion_device, state));
+    return publishRobotValues(nodes, system, state);
 }
 
 }  // namespace metier::opcua_skill

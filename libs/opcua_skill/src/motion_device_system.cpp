@@ -22,11 +22,20 @@ using opcua::Value;
 constexpr std::uint32_t kDeviceSet = 5001;
 constexpr std::uint32_t kMotionDeviceSystemType = 1002;
 constexpr std::uint32_t kControllerType = 1003;
+constexpr std::uint32_t kSoftwareType = 15106;
 constexpr std::uint32_t kAxisType = 16601;
+constexpr std::uint32_t kPowerTrainType = 16794;
+constexpr std::uint32_t kMotorType = 1019;
+constexpr std::uint32_t kTaskControlType = 1011;
+constexpr std::uint32_t kSafetyStateType = 1013;
 constexpr std::uint32_t kControls = 4002;
+constexpr std::uint32_t kMoves = 18178;
+constexpr std::uint32_t kHasSafetyStates = 18182;
 constexpr std::uint32_t kSkillMotionDeviceType = 15857;
 constexpr std::int32_t kArticulatedRobot = 1;
 constexpr std::int32_t kRotary = 1;
+/// Unit of the temperature of a motor.
+constexpr skill::Unit kDegreeCelsius{"°C", "degree Celsius", "CEL"};
 
 /// Indices of the namespaces that a motion device system is made of.
 struct Namespaces {
@@ -121,6 +130,7 @@ public:
         made.system = addSystem();
         addMotionDevice(made);
         addController(made);
+        addSafetyState(made);
         steps_.reference(opcua::ids::kServer, opcua::ids::kHasNotifier, made.system);
         steps_.reference(made.system, opcua::ids::kHasNotifier, made.controller);
         steps_.reference(made.controller, NodeId(index_.opc_robotics, kControls),
@@ -152,13 +162,14 @@ private:
         steps_.write(steps_.find(made.motion_device, {index_.opc_robotics, "MotionDeviceCategory"}),
                      Value::of(kArticulatedRobot));
         const auto axes = steps_.find(made.motion_device, {index_.opc_robotics, "Axes"});
+        const auto trains = steps_.find(made.motion_device, {index_.opc_robotics, "PowerTrains"});
         for (std::size_t axis = 0; axis < spec_.axis_names.size(); ++axis) {
-            addAxis(axes, axis);
+            addPowerTrain(trains, axis, addAxis(axes, axis));
         }
         made.kinematics = addKinematics(made.motion_device);
     }
 
-    void addAxis(const NodeId& axes, std::size_t axis) {
+    NodeId addAxis(const NodeId& axes, std::size_t axis) {
         auto spec = objectSpec(axes, own(fmt::format("Axis_{}", axis + 1)),
                                NodeId(index_.opc_robotics, kAxisType),
                                fmt::format("Axis {} of the arm, counted from the base.", axis + 1));
@@ -169,6 +180,24 @@ private:
         const auto position = steps_.find(parameters, {index_.opc_robotics, "ActualPosition"});
         steps_.write(steps_.find(position, {0, "EngineeringUnits"}),
                      Value::of(toOpcua(skill::kRadian)));
+        return node;
+    }
+
+    /// Adds a power train with one motor, which moves one axis.
+    void addPowerTrain(const NodeId& trains, std::size_t axis, const NodeId& moved) {
+        const auto number = axis + 1;
+        const auto train =
+            steps_.object(objectSpec(trains, own(fmt::format("PowerTrain_{}", number)),
+                                     NodeId(index_.opc_robotics, kPowerTrainType),
+                                     fmt::format("Drive of axis {}.", number)));
+        const auto motor =
+            steps_.object(objectSpec(train, own("Motor"), NodeId(index_.opc_robotics, kMotorType),
+                                     fmt::format("Motor of axis {}.", number)));
+        const auto parameters = steps_.find(motor, {index_.di, "ParameterSet"});
+        const auto temperature = steps_.find(parameters, {index_.opc_robotics, "MotorTemperature"});
+        steps_.write(steps_.find(temperature, {0, "EngineeringUnits"}),
+                     Value::of(toOpcua(kDegreeCelsius)));
+        steps_.reference(train, NodeId(index_.opc_robotics, kMoves), moved);
     }
 
     NodeId addKinematics(const NodeId& motion_device) {
@@ -195,10 +224,38 @@ private:
         controller.event_notifier = opcua::EventNotifier::subscribable;
         made.controller = steps_.object(std::move(controller));
         tellMaker(made.controller);
+        addSoftware(made.controller);
+        addTaskControl(made.controller);
         steps_.check([&]() -> Result<void> {
             METIER_ASSIGN(made.skills, makeSkillController(nodes(), made.controller));
             return {};
         });
+    }
+
+    void addSoftware(const NodeId& controller) {
+        const auto folder = steps_.find(controller, {index_.opc_robotics, "Software"});
+        const auto software = steps_.object(objectSpec(folder, own("ControllerSoftware"),
+                                                       NodeId(index_.di, kSoftwareType),
+                                                       "Software of the controller."));
+        steps_.write(steps_.find(software, {index_.di, "Manufacturer"}),
+                     Value::of(opcua::LocalizedText{"en", spec_.manufacturer}));
+    }
+
+    void addTaskControl(const NodeId& controller) {
+        const auto folder = steps_.find(controller, {index_.opc_robotics, "TaskControls"});
+        const auto task = steps_.object(objectSpec(folder, own("SkillControl"),
+                                                   NodeId(index_.opc_robotics, kTaskControlType),
+                                                   "What runs on the controller for the skills."));
+        steps_.write(steps_.find(task, {index_.di, "ComponentName"}),
+                     Value::of(opcua::LocalizedText{"en", "SkillControl"}));
+    }
+
+    void addSafetyState(const MotionDeviceSystem& made) {
+        const auto folder = steps_.find(made.system, {index_.opc_robotics, "SafetyStates"});
+        const auto safety = steps_.object(
+            objectSpec(folder, own("SafetyState"), NodeId(index_.opc_robotics, kSafetyStateType),
+                       "Safety state of the controller, as observed."));
+        steps_.reference(made.controller, NodeId(index_.opc_robotics, kHasSafetyStates), safety);
     }
 
     void tellMaker(const NodeId& component) {

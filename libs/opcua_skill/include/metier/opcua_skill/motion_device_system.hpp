@@ -44,14 +44,14 @@ struct MotionDeviceSystemSpec {
     std::uint16_t namespace_index = 1;
 };
 
-/// Makes a motion device system below DeviceSet: one motion device with Kinematics and axes, one
-/// controller without skills, and notifiers up to the Server object. Call it before
-/// Server::start().
+/// Makes a motion device system below DeviceSet with what OPC 40010-1 makes mandatory: a motion
+/// device with Kinematics, axes and motors, a controller without skills and a safety state; and
+/// notifiers up to the Server object. Call it before Server::start().
 /// Errors: already_exists; not_found (NodeSets device, robotics and metier are needed).
 Result<MotionDeviceSystem> publishMotionDeviceSystem(opcua::AddressSpace& nodes,
                                                      const MotionDeviceSystemSpec& spec);
 
-/// Sets the fixed values of the arm, and lets clients read its live state.
+/// Sets the fixed values of the arm and serves the live ones; those nobody knows are BadNoData.
 /// \param state called on the server's thread whenever a client reads one of the live values, and
 ///              at each sampling; it must return at once and stay valid until the server has
 ///              stopped
