@@ -274,9 +274,14 @@ Answer<> AsyncSkill::call(skill::Method method, Done<> done) const {
                              [](const std::vector<opcua::Value>& /*none*/) { return Answer<>(); });
 }
 
-Answer<> AsyncSkill::check(const skill::ValueMap& parameters, Done<skill::CheckReport> done) const {
+bool AsyncSkill::runsOthers() const noexcept {
+    return impl_->nodes.runs_others;
+}
+
+Answer<> AsyncSkill::check(const skill::CheckRequest& request,
+                           Done<skill::CheckReport> done) const {
     return impl_->send<skill::CheckReport>(
-        impl_->nodes.check, "Check", {pairsOf(parameters)}, std::move(done),
+        impl_->nodes.check, "Check", checkInputs(request), std::move(done),
         [name = impl_->address.name](const std::vector<opcua::Value>& outputs) {
             return checkReportFrom(outputs, name);
         });

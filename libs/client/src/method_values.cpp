@@ -1,9 +1,11 @@
 #include "method_values.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "metier/opcua/text.hpp"
 #include "metier/opcua/types.hpp"
+#include "metier/opcua_skill/arm_places.hpp"
 #include "metier/opcua_skill/start_keys.hpp"
 #include "metier/opcua_skill/values.hpp"
 
@@ -12,6 +14,7 @@ namespace {
 
 constexpr std::size_t kCheckOutputs = 5;  // least number; values of the stop may follow
 constexpr std::size_t kWithStoppingEstimate = 7;
+constexpr std::size_t kWithEnds = 10;
 constexpr std::size_t kExecutionOutputs = 6;
 
 skill::ValueMap resultsIn(const opcua::Value& pairs, const skill::Fields& results) {
@@ -26,6 +29,24 @@ skill::ValueMap resultsIn(const opcua::Value& pairs, const skill::Fields& result
         }
     }
     return values;
+}
+
+/// Values of a server that reports where its arms end. Arms whose place is not an array of numbers
+/// may be anywhere.
+void readEnds(const std::vector<opcua::Value>& outputs, skill::CheckReport& report) {
+    report.code = opcua::sanitise(outputs[7].as<std::string>().value_or(""));
+    report.ends_known = !outputs[8].isEmpty();
+    for (const auto& [key, value] :
+         outputs[8].as<std::vector<opcua::KeyValue>>().value_or(std::vector<opcua::KeyValue>{})) {
+        if (auto arm = opcua_skill::armIn(key.name, opcua_skill::kEndJointPosition)) {
+            report.ends[std::move(*arm)] =
+                value.as<std::vector<double>>().value_or(std::vector<double>{});
+        }
+    }
+    for (const auto& note :
+         outputs[9].as<std::vector<std::string>>().value_or(std::vector<std::string>{})) {
+        report.notes.push_back(opcua::sanitise(note));
+    }
 }
 
 std::vector<opcua::KeyValue> listOf(const skill::ValueMap& values) {
@@ -43,8 +64,11 @@ skill::Reason reasonFrom(std::int32_t number) {
     return static_cast<skill::Reason>(number >= 0 && number < kNone ? number : kNone);
 }
 
-opcua::Value pairsOf(const skill::ValueMap& values) {
-    return opcua::Value::of(listOf(values));
+std::vector<opcua::Value> checkInputs(const skill::CheckRequest& request) {
+    auto pairs = listOf(request.parameters);
+    auto starts = opcua_skill::pairsOf(request.starts, opcua_skill::kStartJointPosition);
+    std::move(starts.begin(), starts.end(), std::back_inserter(pairs));
+    return {opcua::Value::of(pairs)};
 }
 
 std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request,
@@ -76,6 +100,9 @@ opcua::Answer<skill::CheckReport> checkReportFrom(const std::vector<opcua::Value
     if (outputs.size() >= kWithStoppingEstimate) {
         report.stopping_time = outputs[5].as<double>().value_or(0.0);
         report.stopping_distance = outputs[6].as<double>().value_or(0.0);
+    }
+    if (outputs.size() >= kWithEnds) {
+        readEnds(outputs, report);
     }
     return report;
 }

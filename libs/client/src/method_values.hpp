@@ -21,7 +21,8 @@ namespace metier::client {
 /// A reason by its number; a number that is none becomes a reason whose name is "unknown".
 skill::Reason reasonFrom(std::int32_t number);
 
-opcua::Value pairsOf(const skill::ValueMap& values);
+/// Inputs of Check.
+std::vector<opcua::Value> checkInputs(const skill::CheckRequest& request);
 std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request,
                                           const SkillNodes& nodes);
 opcua::Answer<skill::CheckReport> checkReportFrom(const std::vector<opcua::Value>& outputs,

@@ -240,16 +240,58 @@ TEST_F(RemoteUsedSkillTest, SuspendsRightAfterItsStartWasAskedFor) {
 TEST_F(RemoteUsedSkillTest, ChecksWithoutMoving) {
     std::optional<Result<skill::CheckReport>> report;
     const auto checked = [&](Result<skill::CheckReport> answer) { report = std::move(answer); };
-    used_->check({{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}, checked);
+    used_->check({.parameters = {{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}}, checked);
     EXPECT_FALSE(report) << "in a later turn";
     ASSERT_TRUE(until([&] { return report.has_value(); }));
     ASSERT_TRUE(*report) << report->error().message;
     EXPECT_TRUE((*report)->possible);
     report.reset();
-    used_->check({{"TargetJointPosition", std::vector<double>{9.0, 0.2}}}, checked);
+    used_->check({.parameters = {{"TargetJointPosition", std::vector<double>{9.0, 0.2}}}}, checked);
     ASSERT_TRUE(until([&] { return report.has_value(); }));
     EXPECT_TRUE(!*report || !(*report)->possible) << "9 rad is over the limit of 3 rad";
     EXPECT_EQ(used_->state(), State::ready);
+}
+
+TEST_F(RemoteUsedSkillTest, AsksAgainUntilASkillThatAsksOthersHasAnswered) {
+    move_.hand->keepChecks();
+    const auto url = used_->serverUrl();
+    std::optional<Result<skill::CheckReport>> report;
+    used_->check({.parameters = {{"TargetJointPosition", std::vector<double>{0.1, 0.2}}},
+                  .starts = {{url, {1.0, 2.0}}, {"opc.tcp://else:1", {3.0}}, {"", {4.0}}}},
+                 [&](Result<skill::CheckReport> answer) { report = std::move(answer); });
+    ASSERT_TRUE(move_.hand->await("check"));
+    EXPECT_EQ(move_.hand->checkedStarts(),
+              (skill::ArmPositions{{"", {1.0, 2.0}}, {"opc.tcp://else:1", {3.0}}}))
+        << "as that server names them; it knows nothing of the arm of this one";
+    // Its first answer is that it is not done.
+    ASSERT_TRUE(until([this] { return executor_->timerCount() > 0; }));
+    EXPECT_FALSE(report);
+    skill::CheckReport found{.planned_duration = 1.5,
+                             .ends = {{"", {0.1, 0.2}}, {"opc.tcp://else:1", {}}},
+                             .ends_known = true,
+                             .notes = {"step x: hm"}};
+    ASSERT_TRUE(server().call([&] { move_.hand->answerCheck(found); }));
+    executor_->advance(10ms);
+    ASSERT_TRUE(until([&] { return report.has_value(); }));
+    ASSERT_TRUE(*report) << report->error().message;
+    EXPECT_TRUE((*report)->possible);
+    EXPECT_DOUBLE_EQ((*report)->planned_duration, 1.5);
+    EXPECT_EQ((*report)->ends, (skill::ArmPositions{{url, {0.1, 0.2}}, {"opc.tcp://else:1", {}}}));
+    EXPECT_TRUE((*report)->ends_known);
+    EXPECT_EQ((*report)->notes, std::vector<std::string>{"step x: hm"});
+}
+
+TEST_F(RemoteUsedSkillTest, TellsTheKindOfARefusalAndThatItsEndIsNotKnown) {
+    std::optional<Result<skill::CheckReport>> report;
+    const auto checked = [&](Result<skill::CheckReport> answer) { report = std::move(answer); };
+    move_.hand->refuseStart({Errc::unreachable, "x 2.4 m, reach 0.85 m"});
+    used_->check({.parameters = {{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}}, checked);
+    ASSERT_TRUE(until([&] { return report.has_value(); }));
+    ASSERT_TRUE(*report);
+    EXPECT_FALSE((*report)->possible);
+    EXPECT_EQ((*report)->code, "unreachable");
+    EXPECT_FALSE((*report)->ends_known) << "the skill does not report it";
+    EXPECT_FALSE(used_->runsOthers());
 }
 
 TEST_F(RemoteUsedSkillTest, ComparesClocksWithinHalfARoundTrip) {

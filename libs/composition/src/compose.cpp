@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "left_out.hpp"
 #include "literal.hpp"
 #include "metier/composition/composition.hpp"
 #include "static_check.hpp"
@@ -83,7 +84,9 @@ public:
     Result<Composition> run() && {
         bindStep(definition_.root);
         for (auto& result : definition_.results) {
-            bindTo(result.from, result.field);
+            if (!std::holds_alternative<Literal>(result.from.source)) {  // else left out
+                bindTo(result.from, result.field);
+            }
         }
         if (!problems_.empty()) {
             return fail(Errc::invalid_argument, report());
@@ -376,7 +379,7 @@ SkillDescription descriptionOf(const Definition& definition) {
 }
 
 Result<Composition> compose(Definition definition, const Descriptions& used) {
-    return Binder(std::move(definition), used).run();
+    return Binder(withoutMissing(std::move(definition), used), used).run();
 }
 
 }  // namespace metier::composition

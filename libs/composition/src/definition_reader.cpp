@@ -106,6 +106,7 @@ void readDefault(const TomlTable& table, Field& field) {
 Declaration readResult(const TomlTable& table, const std::string& name) {
     Declaration result{.line = table.line(), .field = readField(table, name), .from = {}};
     result.field.place = skill::Place::final_result;
+    result.field.optional = table.flagOr("optional", false);
     const auto key = fmt::format("results.{}.from", name);
     result.from = Binding{.line = table.line(), .key = key};
     result.from.source = readReference(table, "from", "element");
@@ -121,6 +122,7 @@ Use readUse(const TomlTable& table, const std::string& alias) {
     use.reach = table.amount("reach", "m");
     use.payload = table.amount("payload", "kg");
     use.reset = table.flagOr("reset", false);
+    use.optional = table.flagOr("optional", false);
     return use;
 }
 

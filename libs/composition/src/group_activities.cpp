@@ -3,18 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
+#include "rounds.hpp"
 #include "run.hpp"
 
 namespace metier::composition {
-
-namespace {
-
-constexpr double kMostRepeats = 1e6;
-
-}  // namespace
 
 void SequenceActivity::next() {
     if (index_ == steps_.size()) {
@@ -146,14 +140,12 @@ void ChoiceActivity::start() {
 
 void LoopActivity::start() {
     if (step_.times) {
-        const auto times = run_.scope().number(*step_.times);
-        if (!times || !(*times >= 0.0 && *times <= kMostRepeats) || *times != std::floor(*times)) {
-            end(failed(times ? fmt::format("times is {}; it needs a whole number from 0 to {}",
-                                           *times, kMostRepeats)
-                             : times.error().message));
+        const auto times = run_.scope().number(*step_.times).and_then(wholeRounds);
+        if (!times) {
+            end(failed(times.error().message));
             return;
         }
-        times_ = static_cast<std::uint64_t>(*times);
+        times_ = *times;
     }
     nextRound();
 }

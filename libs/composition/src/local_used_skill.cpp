@@ -39,7 +39,7 @@ Result<void> LocalUsedSkill::reset(UsedSkillListener& listener) {
 }
 
 template <typename Answer>
-void LocalUsedSkill::answer(std::function<void(Result<Answer>)> done, Answer answer) {
+void LocalUsedSkill::answer(std::function<void(Result<Answer>)> done, Result<Answer> answer) {
     executor_->post([alive = alive_, done = std::move(done), answer = std::move(answer)]() mutable {
         if (*alive) {
             done(std::move(answer));
@@ -47,13 +47,18 @@ void LocalUsedSkill::answer(std::function<void(Result<Answer>)> done, Answer ans
     });
 }
 
-void LocalUsedSkill::check(const skill::ValueMap& parameters,
-                           std::function<void(Result<skill::CheckReport>)> done) {
-    answer(std::move(done), program_.check(caller_, parameters));
+void LocalUsedSkill::check(const skill::CheckRequest& request, skill::CheckDone done) {
+    program_.check(
+        caller_, request,
+        [this, alive = alive_, done = std::move(done)](Result<skill::CheckReport> report) {
+            if (*alive) {
+                answer(done, std::move(report));
+            }
+        });
 }
 
 void LocalUsedSkill::compareClocks(std::function<void(Result<ClockOffset>)> done) {
-    answer(std::move(done), ClockOffset{});
+    answer(std::move(done), Result<ClockOffset>());
 }
 
 void LocalUsedSkill::begin(skill::StartRequest request, UsedSkillListener& listener) {

@@ -28,6 +28,8 @@ public:
     /// Value of a binding to a number of any type.
     Result<double> number(const Binding& binding) const;
     Result<skill::Value> read(const Reference& reference) const;
+    /// Parameters of the execution.
+    const skill::ValueMap& parameters() const noexcept { return parameters_; }
 
 private:
     Result<skill::Value> unshifted(const Binding& binding, skill::ValueType type) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "check/steps_check.hpp"
 #include "run.hpp"
 
 namespace metier::composition {
@@ -12,6 +13,11 @@ namespace metier::composition {
 namespace {
 
 using skill::State;
+using namespace std::chrono_literals;
+
+// Clients wait longer than that for an answer.
+constexpr auto kLongestCheck = 10s;
+constexpr std::size_t kMostChecks = 16;
 
 class SequenceWork final : public skill::ExecutionWork {
 public:
@@ -67,6 +73,8 @@ SequenceSkill::SequenceSkill(Composition composition,
     collectNeeded(composition_.definition.root.steps, needed_);
 }
 
+SequenceSkill::~SequenceSkill() = default;
+
 Result<void> SequenceSkill::checkUsable(const std::string& alias) const {
     const auto& bound = used_.find(alias)->second;
     const auto& used = *bound.skill;
@@ -88,11 +96,33 @@ Result<void> SequenceSkill::checkUsable(const std::string& alias) const {
     return {};
 }
 
-Result<std::unique_ptr<skill::ExecutionWork>> SequenceSkill::prepare(
-    const skill::ValueMap& snapshot) {
+Result<void> SequenceSkill::checkNeeded() const {
     for (const auto& alias : needed_) {
         METIER_TRY(checkUsable(alias));
     }
+    return {};
+}
+
+void SequenceSkill::checkFrom(const skill::ArmPositions& starts, const skill::ValueMap& snapshot,
+                              skill::CheckDone done) {
+    std::erase_if(checks_, [](const auto& check) { return check->over(); });
+    auto usable = checkNeeded();
+    if (usable && checks_.size() >= kMostChecks) {
+        usable = fail(Errc::resource_unavailable,
+                      fmt::format("{} checks are under way", checks_.size()));
+    }
+    if (!usable) {
+        done(fail(usable.error()));
+        return;
+    }
+    checks_.push_back(std::make_unique<StepsCheck>(
+        StepsCheck::Setup{composition_, used_, *executor_}, snapshot, starts));
+    checks_.back()->start(kLongestCheck, std::move(done));
+}
+
+Result<std::unique_ptr<skill::ExecutionWork>> SequenceSkill::prepare(
+    const skill::ValueMap& snapshot) {
+    METIER_TRY(checkNeeded());
     return std::make_unique<SequenceWork>(RunSetup{composition_, used_, executor_, clock_, origin_},
                                           snapshot, work_count_);
 }
@@ -118,6 +148,10 @@ Result<void> SequenceSkill::rebind(std::map<std::string, std::unique_ptr<UsedSki
         }
     }
     METIER_ASSIGN(auto composed, compose(composition_.definition, descriptionsWith(used_skills)));
+    for (const auto& check : checks_) {
+        check->giveUp("the skills that it uses were replaced meanwhile");
+    }
+    checks_.clear();
     composition_ = std::move(composed);
     for (auto& [alias, used] : used_skills) {
         auto& bound = used_.find(alias)->second;

@@ -54,6 +54,9 @@ public:
         }
         for (const auto& use : definition.uses) {
             aliases_.insert(use.alias);
+            if (use.optional) {
+                optional_.insert(use.alias);
+            }
         }
     }
 
@@ -86,6 +89,8 @@ private:
                  fmt::format("\"{}\" stands for the execution itself", kExecution));
         }
         checkBackground(step);
+        checkOptional(step, step.steps);
+        checkOptional(step, step.otherwise);
         if (!step.name.empty() && !steps_.emplace(step.name, &step).second) {
             note(step.line, step.key + ".name",
                  fmt::format("\"{}\" is the name of the step at line {}, too", step.name,
@@ -112,6 +117,26 @@ private:
                     note(inner.line, inner.key + ".background",
                          "is for some of the steps of a parallel that waits for all");
                 }
+            }
+        }
+    }
+
+    bool isOptional(const Step& step) const {
+        return step.kind == StepKind::call && optional_.contains(step.use);
+    }
+
+    /// What is left when optional steps are left out must still do something.
+    void checkOptional(const Step& step, const std::vector<Step>& steps) {
+        const bool possible = step.kind != StepKind::fallback && step.wait_for == WaitFor::all &&
+                              std::any_of(steps.begin(), steps.end(), [this](const Step& inner) {
+                                  return !isOptional(inner) && !inner.background;
+                              });
+        for (const auto& inner : steps) {
+            if (isOptional(inner) && !possible) {
+                note(inner.line, inner.key + ".run",
+                     fmt::format("\"{}\" is optional: its step needs another one beside it that is "
+                                 "always there, and is for no fallback and no wait_for = \"any\"",
+                                 inner.use));
             }
         }
     }
@@ -160,6 +185,9 @@ private:
         }
         for (const auto& argument : step.arguments) {
             checkBinding(argument.value);
+        }
+        if (isOptional(step)) {
+            return {};
         }
         return known_.insert(step.name).second ? Added{{step.name}} : Added{};
     }
@@ -353,6 +381,7 @@ private:
     std::map<std::string, const skill::Field*, std::less<>> parameters_;
     std::map<std::string, const Step*, std::less<>> steps_;
     Names aliases_;
+    Names optional_;  // aliases that may be served by nobody
     // Calls that have certainly finished where the check is now, and how many steps on the way
     // there always fail: sets of their own for each step would take a time that grows with the
     // square.

@@ -53,7 +53,11 @@ void readCall(const TomlTable& table, Step& step) {
     const auto with = table.table("with");
     for (const auto& name : with.keys()) {
         const auto key = fmt::format("{}.with.{}", step.key, name);
-        step.arguments.push_back({name, readBinding(*with.value(name), key)});
+        const auto value = *with.value(name);
+        step.arguments.push_back({name, readBinding(value, key)});
+        if (const auto reference = value.table()) {
+            step.arguments.back().value.optional = reference->flagOr("optional", false);
+        }
     }
 }
 

@@ -289,8 +289,8 @@ TEST_F(OneLocalUsedSkill, AnswersChecksAndClocksLaterAndNotOnceItIsGone) {
         possible.push_back(report->possible);
     };
     const auto compared = [&](const Result<ClockOffset>& offset) { offsets.push_back(*offset); };
-    used_.check({{"Target", 1.0}}, checked);
-    used_.check({{"Target", 11.0}}, checked);
+    used_.check({.parameters = {{"Target", 1.0}}}, checked);
+    used_.check({.parameters = {{"Target", 11.0}}}, checked);
     used_.compareClocks(compared);
     EXPECT_TRUE(possible.empty() && offsets.empty()) << "in a later turn";
     executor_->run();

@@ -26,10 +26,14 @@ public:
         listener = &to;
         return reset_answer;
     }
-    void check(const skill::ValueMap& parameters,
-               std::function<void(Result<skill::CheckReport>)> done) override {
+    bool runsOthers() const override { return runs_others; }
+    void check(const skill::CheckRequest& question, skill::CheckDone done) override {
+        if (on_check) {
+            done(on_check(question));
+            return;
+        }
         calls.emplace_back("check");
-        checked = parameters;
+        checked = question.parameters;
         check_done = std::move(done);
     }
     void compareClocks(std::function<void(Result<ClockOffset>)> done) override {
@@ -95,8 +99,11 @@ public:
     Result<void> resume_answer{};
     std::vector<std::string> calls{};
     skill::StartRequest request{};
+    bool runs_others = false;
+    /// Answers each Check at once; none: the test does, by check_done.
+    std::function<Result<skill::CheckReport>(const skill::CheckRequest&)> on_check{};
     skill::ValueMap checked{};
-    std::function<void(Result<skill::CheckReport>)> check_done{};
+    skill::CheckDone check_done{};
     std::function<void(Result<ClockOffset>)> clocks_done{};
     UsedSkillListener* listener = nullptr;
 

@@ -188,5 +188,60 @@ TEST(SynchronizedMove, NeedsMovesThatTakeAStartTime) {
     EXPECT_EQ(unfitReason(old), "JointPtpMoveSkill has no parameter StartTime");
 }
 
+/// Check, with places of arms; the answer that it got.
+std::optional<Result<skill::CheckReport>> check(Bench& bench, const skill::ArmPositions& starts) {
+    std::optional<Result<skill::CheckReport>> answer;
+    bench.program->check(kClient, {Bench::twoPoses(), starts},
+                         [&](Result<skill::CheckReport> report) { answer = std::move(report); });
+    bench.run();
+    return answer;
+}
+
+TEST(CheckOfASynchronizedMove, AsksAllArmsForTheirReachAndEnds) {
+    Bench bench;
+    skill::ArmPositions starts;
+    for (const std::string arm : {"left", "right"}) {
+        bench[arm].pose->on_check = [&, arm](const skill::CheckRequest& request) {
+            starts.insert(request.starts.begin(), request.starts.end());
+            return skill::CheckReport{.planned_duration = arm == "left" ? 1.0 : 2.0,
+                                      .ends = {{arm, {1.0}}},
+                                      .ends_known = true};
+        };
+    }
+    const auto report = check(bench, {{"", {0.5}}, {"elsewhere", {2.0}}});
+    ASSERT_TRUE(report && *report);
+    EXPECT_TRUE((*report)->possible);
+    EXPECT_DOUBLE_EQ((*report)->planned_duration, 2.0);
+    EXPECT_EQ((*report)->ends, (skill::ArmPositions{{"left", {1.0}}, {"right", {1.0}}}));
+    EXPECT_EQ(starts, (skill::ArmPositions{{"", {0.5}}})) << "each gets the place of its own arm";
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST(CheckOfASynchronizedMove, NamesTheArmThatCannotGetToItsTarget) {
+    Bench bench;
+    bench["left"].pose->on_check = [](const auto& /*request*/) { return skill::CheckReport{}; };
+    bench["right"].pose->on_check = [](const auto& /*request*/) -> skill::CheckReport {
+        return {.possible = false, .reason = "1.2 m away", .code = "unreachable"};
+    };
+    const auto report = check(bench, {});
+    ASSERT_TRUE(report && *report);
+    EXPECT_FALSE((*report)->possible);
+    EXPECT_EQ((*report)->reason, "right cannot get to its target: 1.2 m away");
+    EXPECT_EQ((*report)->code, "unreachable");
+}
+
+TEST(CheckOfASynchronizedMove, DoesNotKnowIfAnArmDoesNotAnswer) {
+    Bench bench;
+    std::optional<Result<skill::CheckReport>> answer;
+    bench.program->check(kClient, {Bench::twoPoses(), {}},
+                         [&](Result<skill::CheckReport> report) { answer = std::move(report); });
+    bench.executor->advance(9s);
+    EXPECT_FALSE(answer);
+    bench.executor->advance(2s);
+    ASSERT_TRUE(answer && !*answer);
+    EXPECT_EQ(answer->error().code, Errc::timeout);
+    EXPECT_EQ(answer->error().message, "0 of 2 arms have answered");
+}
+
 }  // namespace
 }  // namespace metier::composition

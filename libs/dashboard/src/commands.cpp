@@ -76,6 +76,25 @@ opcua::Answer<> resetUntilDone(const client::AsyncSkill& skill) {
     return asked;
 }
 
+/// Asks again while a composed skill asks the skills that it uses.
+opcua::Answer<skill::CheckReport> checkUntilDone(const client::AsyncSkill& skill,
+                                                 const skill::ValueMap& values) {
+    constexpr std::chrono::milliseconds kPause{20};
+    const auto ask = [&] {
+        return awaitAnswer<skill::CheckReport>(
+            [&](auto done) { return skill.check(skill::CheckRequest{values}, std::move(done)); });
+    };
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
+    auto report = ask();
+    while (!report && report.error().code == Errc::timeout &&
+           report.error().delivery == opcua::Failure::Delivery::answered &&
+           std::chrono::steady_clock::now() < deadline) {
+        std::this_thread::sleep_for(kPause);
+        report = ask();
+    }
+    return report;
+}
+
 /// Names of servers, each with that of one that uses it.
 using UsedServers = std::map<std::string, std::string>;
 
@@ -149,6 +168,7 @@ json checkJson(const skill::CheckReport& report) {
             {"stopping_time", rounded(report.stopping_time)},
             {"stopping_distance", rounded(report.stopping_distance)},
             {"first_failing_fraction", report.first_failing_fraction},
+            {"notes", report.notes},
             {"preview", std::move(preview)}};
 }
 
@@ -178,8 +198,7 @@ Reply Commands::control(const json& body, const std::shared_ptr<Person>& person)
 Reply Commands::check(const json& body, const std::shared_ptr<Person>& person) {
     METIER_ASSIGN(const auto named, askedSkill(watches_, tabs_, body, *person));
     METIER_ASSIGN(const auto values, parametersIn(body, named.skill->description()));
-    const auto report = awaitAnswer<skill::CheckReport>(
-        [&](auto done) { return named.skill->check(values, std::move(done)); });
+    const auto report = checkUntilDone(*named.skill, values);
     return report ? Reply{200, checkJson(*report)}
                   : errorReply(explained(report.error(), *named.skill, "Check"));
 }

@@ -190,6 +190,13 @@ TEST(Check, OfASkillThatMovesNothingHasNoPreview) {
     EXPECT_EQ(shown.at("possible"), false);
     EXPECT_EQ(shown.at("message"), report.reason);
     EXPECT_EQ(shown.at("preview"), json::array());
+    EXPECT_EQ(shown.at("notes"), json::array());
+}
+
+TEST(Check, ShowsWhatCouldNotBeChecked) {
+    skill::CheckReport report;
+    report.notes = {"step second: it has no Check"};
+    EXPECT_EQ(checkJson(report).at("notes"), json::array({"step second: it has no Check"}));
 }
 
 TEST(Values, AreListsHoweverDeepTheyAre) {

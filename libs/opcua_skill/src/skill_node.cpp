@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "diagnostic.hpp"
+#include "metier/opcua_skill/arm_places.hpp"
 #include "metier/opcua_skill/start_keys.hpp"
 #include "metier/opcua_skill/values.hpp"
 #include "owner_loss.hpp"
@@ -50,6 +51,21 @@ NodeRole nodeRoleOf(std::uint32_t tag) {
 
 Part partIn(NodeRole node_role) {
     return static_cast<Part>(node_role.detail);
+}
+
+/// Outputs of Check. EndJointPositions is Null if it is not known which arms move.
+std::vector<Value> outputsOf(const skill::CheckReport& report) {
+    return {Value::of(report.possible),
+            Value::of(report.reason),
+            Value::of(report.first_failing_fraction),
+            Value::of(report.planned_duration),
+            Value::ofRows(report.joint_path),
+            Value::of(report.stopping_time),
+            Value::of(report.stopping_distance),
+            Value::of(report.code),
+            report.ends_known ? Value::of(opcua_skill::pairsOf(report.ends, kEndJointPosition))
+                              : Value(),
+            Value::of(report.notes)};
 }
 
 }  // namespace
@@ -137,6 +153,7 @@ Result<void> SkillNode::bindMethod(opcua::AddressSpace& nodes, const NodeId& nod
 
 void SkillNode::sessionClosed(const Session& session) {
     program_->sessionClosed(session.id.toString());
+    checks_.sessionClosed(session.id);
 }
 
 DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
@@ -286,6 +303,10 @@ Result<void> SkillNode::takeGiven(const opcua::KeyValue& given, Given& into) con
     const bool is_field = field != fields.end();
     const bool is_parent = !is_field && (name == kParentExecution || name == kParentServer);
     if (!is_field && !is_parent) {
+        METIER_ASSIGN(const bool is_start, takeStart(given, into));
+        if (is_start) {
+            return {};
+        }
         return fail(Errc::invalid_argument, fmt::format("no parameter {}", name));
     }
     auto taken = fromOpcua(given.value, is_field ? field->type : skill::ValueType::text);
@@ -309,6 +330,27 @@ Result<void> SkillNode::takeGiven(const opcua::KeyValue& given, Given& into) con
     return {};
 }
 
+/// \return whether it is the place of an arm
+Result<bool> SkillNode::takeStart(const opcua::KeyValue& given, Given& into) {
+    constexpr std::size_t kMostArms = 64;
+    const auto& name = given.key.name;
+    auto arm = armIn(name, kStartJointPosition);
+    if (!arm) {
+        return false;
+    }
+    auto place = given.value.as<std::vector<double>>();
+    if (!place) {
+        return fail(place.error().code, fmt::format("{}: {}", name, place.error().message));
+    }
+    if (into.starts.size() == kMostArms) {
+        return fail(Errc::out_of_range, fmt::format("{}: over {} arms", name, kMostArms));
+    }
+    if (!into.starts.emplace(std::move(*arm), std::move(*place)).second) {
+        return fail(Errc::invalid_argument, fmt::format("{} is given twice", name));
+    }
+    return true;
+}
+
 Result<SkillNode::Given> SkillNode::givenIn(const Value& pairs) const {
     METIER_ASSIGN(const auto all, pairs.as<std::vector<opcua::KeyValue>>());
     Given given;
@@ -330,6 +372,10 @@ Result<std::vector<Value>> SkillNode::startWith(const Session& session,
                                                 std::span<const Value> inputs) {
     const auto id = inputs[0].as<std::string>();
     auto given = givenIn(inputs[1]);
+    if (given && !given->starts.empty()) {
+        given = fail(Errc::invalid_argument,
+                     fmt::format("no parameter {}; Check takes it", kStartJointPosition));
+    }
     const auto action = inputs[2].as<std::int32_t>();
     const auto epoch = inputs[3].as<std::uint64_t>();
     const auto deadline = inputs[4].as<UtcTime>();
@@ -352,22 +398,21 @@ Result<std::vector<Value>> SkillNode::startWith(const Session& session,
 }
 
 Result<std::vector<Value>> SkillNode::check(const Session& session, std::span<const Value> inputs) {
-    const auto given = givenIn(inputs[0]);
-    skill::CheckReport report;
-    if (given) {
-        report = program_->check(callerOf(session), given->parameters);
-    } else {
-        report.possible = false;
-        report.reason = given.error().message;
-        report.first_failing_fraction = 0.0;
+    auto given = givenIn(inputs[0]);
+    if (!given) {
+        return outputsOf({.possible = false,
+                          .reason = given.error().message,
+                          .code = std::string(toString(given.error().code)),
+                          .first_failing_fraction = 0.0});
     }
-    return std::vector{Value::of(report.possible),
-                       Value::of(report.reason),
-                       Value::of(report.first_failing_fraction),
-                       Value::of(report.planned_duration),
-                       Value::ofRows(report.joint_path),
-                       Value::of(report.stopping_time),
-                       Value::of(report.stopping_distance)};
+    METIER_ASSIGN(
+        const auto report,
+        checks_.answer(session.id, {std::move(given->parameters), std::move(given->starts)},
+                       program_->executor(),
+                       [&](const skill::CheckRequest& request, skill::CheckDone done) {
+                           program_->check(callerOf(session), request, std::move(done));
+                       }));
+    return outputsOf(report);
 }
 
 Result<std::vector<Value>> SkillNode::getExecution(std::span<const Value> inputs) const {

@@ -14,6 +14,7 @@
 #include "model_ids.hpp"
 #include "node_limits.hpp"
 #include "node_role.hpp"
+#include "pending_checks.hpp"
 #include "skill_factory.hpp"
 
 namespace metier::opcua_skill {
@@ -93,8 +94,10 @@ private:
     struct Given {
         skill::ValueMap parameters{};
         skill::ParentExecution parent{};
+        skill::ArmPositions starts{};  ///< of Check
     };
     Result<void> takeGiven(const opcua::KeyValue& given, Given& into) const;
+    static Result<bool> takeStart(const opcua::KeyValue& given, Given& into);
     Result<Given> givenIn(const opcua::Value& pairs) const;
     std::vector<opcua::KeyValue> pairsOf(const skill::ValueMap& values) const;
     std::string readReason(const opcua::Session& session) const;
@@ -111,6 +114,7 @@ private:
     SkillContext& context_;
     std::unique_ptr<skill::Program> program_;
     NodeLimits limits_;
+    PendingChecks checks_;
     std::vector<opcua::VariableSlot> slots_;  ///< slots of all Variables; never move
 };
 

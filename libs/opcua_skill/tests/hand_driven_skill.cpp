@@ -106,6 +106,38 @@ Result<void> Hand::prepared(const skill::ValueMap& snapshot) {
     return start_answer_;
 }
 
+void Hand::keepChecks() {
+    const std::lock_guard lock(mutex_);
+    keeps_checks_ = true;
+}
+
+skill::ArmPositions Hand::checkedStarts() const {
+    const std::lock_guard lock(mutex_);
+    return starts_;
+}
+
+void Hand::answerCheck(Result<skill::CheckReport> report) {
+    skill::CheckDone done;
+    {
+        const std::lock_guard lock(mutex_);
+        done = std::move(check_done_);
+    }
+    done(std::move(report));
+}
+
+bool Hand::checked(const skill::ArmPositions& starts, const skill::CheckDone& done) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (!keeps_checks_) {
+            return false;
+        }
+        starts_ = starts;
+        check_done_ = done;
+    }
+    told("check");
+    return true;
+}
+
 Result<void> Hand::mayReset() const {
     const std::lock_guard lock(mutex_);
     return reset_answer_;
@@ -115,6 +147,13 @@ Result<std::unique_ptr<skill::ExecutionWork>> HandDrivenSkill::prepare(
     const skill::ValueMap& snapshot) {
     METIER_TRY(hand_->prepared(snapshot));
     return std::make_unique<HandDrivenWork>(hand_);
+}
+
+void HandDrivenSkill::checkFrom(const skill::ArmPositions& starts, const skill::ValueMap& snapshot,
+                                skill::CheckDone done) {
+    if (!hand_->checked(starts, done)) {
+        done(check(snapshot));
+    }
 }
 
 Result<void> HandDrivenSkill::reset() {

@@ -28,10 +28,18 @@ public:
     void refuseReset(Error error);
     void allowReset();
 
+    /// From now on Check is told as "check", and answered by answerCheck() alone.
+    void keepChecks();
+    /// The last Check; its answer. The server's thread.
+    skill::ArmPositions checkedStarts() const;
+    void answerCheck(Result<skill::CheckReport> report);
+
     void told(const std::string& what);
     void started(skill::ExecutionHandle execution);
     Result<void> prepared(const skill::ValueMap& snapshot);
     Result<void> mayReset() const;
+    /// Whether the check is kept.
+    bool checked(const skill::ArmPositions& starts, const skill::CheckDone& done);
 
 private:
     mutable std::mutex mutex_;
@@ -41,6 +49,9 @@ private:
     skill::ValueMap snapshot_;
     Result<void> start_answer_;
     Result<void> reset_answer_;
+    bool keeps_checks_ = false;
+    skill::ArmPositions starts_;
+    skill::CheckDone check_done_;
 };
 
 /// A skill that does nothing by itself.
@@ -52,6 +63,8 @@ public:
     const skill::SkillDescription& description() const override { return description_; }
     Result<std::unique_ptr<skill::ExecutionWork>> prepare(const skill::ValueMap& snapshot) override;
     Result<void> reset() override;
+    void checkFrom(const skill::ArmPositions& starts, const skill::ValueMap& snapshot,
+                   skill::CheckDone done) override;
 
 private:
     skill::SkillDescription description_;

@@ -115,7 +115,12 @@ TEST_F(GripperSkillsOf, AGripperAnswerCheckAsStart) {
     const auto report = bench.program(kMove).check(bench.caller, {{"Width", 0.2}});
     EXPECT_FALSE(report.possible);
     EXPECT_THAT(report.reason, HasSubstr("0.11 m"));
-    EXPECT_TRUE(bench.program(kMove).check(bench.caller, {{"Width", 0.1}}).possible);
+    EXPECT_EQ(report.code, "out_of_range");
+    const auto fine = bench.program(kMove).check(bench.caller, {{"Width", 0.1}});
+    EXPECT_TRUE(fine.possible);
+    for (const auto& answer : {report, fine}) {
+        EXPECT_TRUE(answer.ends_known && answer.ends.empty()) << "it moves no arm";
+    }
     EXPECT_TRUE(gripper.asked.empty());
 }
 

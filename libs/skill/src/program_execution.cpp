@@ -17,6 +17,23 @@ Reason faultReason(Reason reason) noexcept {
     return haltedBecause(reason) == SubState::halted_by_client ? Reason::error : reason;
 }
 
+/// Answer of Check where Start would be refused with that error.
+CheckReport refusal(const Error& error) {
+    return {.possible = false,
+            .reason = error.message,
+            .code = std::string(toString(error.code)),
+            .first_failing_fraction = 0.0};
+}
+
+/// Passes on the first answer alone: a skill that throws after its answer has given it.
+CheckDone once(CheckDone done) {
+    return [open = std::make_shared<CheckDone>(std::move(done))](Result<CheckReport> answer) {
+        if (const auto first = std::exchange(*open, nullptr)) {
+            first(std::move(answer));
+        }
+    };
+}
+
 }  // namespace
 
 /// Whether parameters and device are free for the caller.
@@ -137,24 +154,50 @@ void Program::nameDeadlinePassed() {
 
 CheckReport Program::check(const Caller& caller, const ValueMap& parameters) {
     auto checked = checkNow(caller, parameters);
-    const auto report = checked ? std::move(*checked)
-                                : CheckReport{.possible = false,
-                                              .reason = checked.error().message,
-                                              .first_failing_fraction = 0.0};
+    auto report = checked ? std::move(*checked) : refusal(checked.error());
+    noteCheck(caller, parameters, report);
+    return report;
+}
+
+void Program::check(const Caller& caller, const CheckRequest& request, CheckDone done) {
+    const auto answer = once([this, caller, parameters = request.parameters,
+                              done = std::move(done)](Result<CheckReport> checked) {
+        if (!checked && checked.error().code == Errc::timeout) {
+            done(std::move(checked));
+            return;
+        }
+        auto report = checked ? std::move(*checked) : refusal(checked.error());
+        noteCheck(caller, parameters, report);
+        done(std::move(report));
+    });
+    const auto asked =
+        checkable(caller, request.parameters).and_then([&](const ValueMap& snapshot) {
+            return guarded([&] { skill_->checkFrom(request.starts, snapshot, answer); });
+        });
+    if (!asked) {
+        answer(metier::fail(asked.error()));
+    }
+}
+
+void Program::noteCheck(const Caller& caller, const ValueMap& parameters,
+                        const CheckReport& report) {
     if (!busy_) {
         const Call call(*this);
         notify([&](ProgramObserver& observer) { observer.onCheck(caller, parameters, report); });
     }
-    return report;
 }
 
-Result<CheckReport> Program::checkNow(const Caller& caller, const ValueMap& parameters) {
+Result<ValueMap> Program::checkable(const Caller& caller, const ValueMap& parameters) const {
     if (busy_) {
         return metier::fail(Errc::invalid_state, "Check from inside a notification");
     }
     METIER_TRY(checkAllowed(Method::start_with, caller));
     METIER_TRY(checkFree(caller));
-    METIER_ASSIGN(auto snapshot, parameters_.snapshotOf(parameters));
+    return parameters_.snapshotOf(parameters);
+}
+
+Result<CheckReport> Program::checkNow(const Caller& caller, const ValueMap& parameters) {
+    METIER_ASSIGN(const auto snapshot, checkable(caller, parameters));
     return guarded([&] { return skill_->check(snapshot); });
 }
 

@@ -280,6 +280,29 @@ TEST_F(Owned, CheckSaysWhatStartWouldSayAndChangesNothing) {
     EXPECT_EQ(script->bodies_alive, 1);
 }
 
+TEST_F(Owned, CheckGivesItsAnswerOnceAndTellsTheKindOfARefusal) {
+    int answers = 0;
+    CheckReport answer;
+    const auto check = [&](const Caller& caller, ValueMap parameters) {
+        program.check(caller, {std::move(parameters), {}}, [&](const Result<CheckReport>& report) {
+            ++answers;
+            answer = report.value();
+        });
+        return answer;
+    };
+    EXPECT_TRUE(check(kAlice, {{"Speed", 1.0}}).possible);
+    EXPECT_EQ(check(kAlice, {{"Speed", 2.5}}).code, "out_of_range");
+    script->prepared = metier::fail(Errc::unreachable, "x 2.4 m, reach 0.85 m");
+    EXPECT_EQ(check(kAlice, {}).code, "unreachable");
+    EXPECT_EQ(answers, 3);
+    script->prepared = metier::fail(Errc::timeout, "not known yet");
+    std::string error;
+    program.check(kAlice, {}, [&](const Result<CheckReport>& report) {
+        error = report ? "an answer" : report.error().message;
+    });
+    EXPECT_EQ(error, "not known yet");
+}
+
 TEST_F(Owned, TheEndOfALeaseLeavesWhatAnotherSessionHasBegunOrConfigured) {
     ASSERT_TRUE(program.start(kBob));
     ASSERT_TRUE(control->acquire(kAlice, 500ms, OwnerLossAction::halt));

@@ -196,6 +196,8 @@ export interface CheckResult {
     duration?: number;
     length?: number;
     preview?: PathPoint[];
+    /** What could not be checked, one line each. */
+    notes?: string[];
 }
 
 export interface Transition {

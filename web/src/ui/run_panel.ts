@@ -179,7 +179,8 @@ export class RunPanel {
         ].filter((text) => text !== '').join(' \u00b7 ');
         const title = result.possible ? 'Possible' : `Not possible: ${words(result.code ?? 'refused').replace(/_/g, ' ')}`;
         fill(this.verdict, h('div', { class: result.possible ? 'good' : 'bad' },
-            h('strong', {}, title), facts !== '' && h('span', {}, facts), (result.message ?? '') !== '' && h('p', {}, result.message as string)));
+            h('strong', {}, title), facts !== '' && h('span', {}, facts), (result.message ?? '') !== '' && h('p', {}, result.message as string),
+            ...(result.notes ?? []).map((note) => h('p', { class: 'note' }, note))));
         this.verdict.scrollIntoView({ block: 'nearest' });
         this.context.stage.preview(this.skill?.arm ?? null, result.preview ?? null);
     }

@@ -34,6 +34,10 @@ public:
     void post(std::function<void(RemoteUsedSkill&)> work);
     /// The owner's thread.
     void attach(RemoteUsedSkill* used) { used_ = used; }
+    /// Runs `work` after the delay, unless the Timer has ended. The owner's thread.
+    [[nodiscard]] skill::Timer after(std::chrono::nanoseconds delay, std::function<void()> work) {
+        return executor_->after(delay, std::move(work));
+    }
 
     // Shared by what its thread owns
 private:

@@ -25,6 +25,30 @@ constexpr int kQuestions = 10;
 constexpr const char* kResetMeanwhile = "it was reset while it was suspended";
 const opcua::NodeId kCurrentTime(0, 2258U);  // Server/ServerStatus/CurrentTime
 
+// Longer than a composed skill asks the skills that it uses.
+constexpr auto kLongestUsedCheck = std::chrono::seconds(15);
+constexpr auto kUsedCheckPause = std::chrono::milliseconds(10);
+
+/// Places of arms as the server at `url` names them. The arms of this server have no address.
+skill::ArmPositions seenThere(const skill::ArmPositions& arms, const std::string& url) {
+    skill::ArmPositions seen;
+    for (const auto& [server, place] : arms) {
+        if (!server.empty()) {
+            seen.emplace(server == url ? std::string() : server, place);
+        }
+    }
+    return seen;
+}
+
+/// Places of arms that the server at `url` has named.
+skill::ArmPositions seenHere(const skill::ArmPositions& arms, const std::string& url) {
+    skill::ArmPositions seen;
+    for (const auto& [server, place] : arms) {
+        seen.emplace(server.empty() ? url : server, place);
+    }
+    return seen;
+}
+
 Result<ClockOffset> askTime(opcua::Client& client) {
     const auto sent = std::chrono::steady_clock::now();
     const auto sent_utc = std::chrono::system_clock::now();
@@ -87,6 +111,7 @@ void RemoteUsedSkill::adopt(std::shared_ptr<OpenSkill> skill, const AsyncSkill::
     skill_ = std::move(skill);
     description_ = skill_->skill.description();
     lacks_ = textOf(skill_->skill.lacks());
+    runs_others_ = skill_->skill.runsOthers();
     state_ = now.state;
     reason_text_ = now.reason_text;
     const bool runs = state_ == State::running || state_ == State::suspended;
@@ -121,21 +146,44 @@ void RemoteUsedSkill::lost(const std::string& why) {
     }
 }
 
-void RemoteUsedSkill::check(const skill::ValueMap& parameters,
-                            std::function<void(Result<skill::CheckReport>)> done) {
-    using Report = Result<skill::CheckReport>;
-    const auto told = [link = link_, done = std::move(done)](Report report) {
-        link->post([done, report = std::move(report)](RemoteUsedSkill& /*used*/) { done(report); });
+void RemoteUsedSkill::check(const skill::CheckRequest& request, skill::CheckDone done) {
+    const auto number = ++check_count_;
+    checks_.emplace(number, OpenCheck{{request.parameters, seenThere(request.starts, serverUrl())},
+                                      std::move(done),
+                                      std::chrono::steady_clock::now() + kLongestUsedCheck});
+    askCheck(number);
+}
+
+void RemoteUsedSkill::askCheck(std::uint64_t number) {
+    const auto told = [link = link_, number](const opcua::Answer<skill::CheckReport>& answer) {
+        link->post([number, answer](RemoteUsedSkill& used) { used.checked(number, answer); });
     };
-    const auto sent =
-        skill_ ? skill_->skill.check(parameters,
-                                     [told](const opcua::Answer<skill::CheckReport>& report) {
-                                         told(report ? Report(*report) : fail(report.error()));
-                                     })
-               : opcua::failed(opcua::status::kBadConnectionClosed, lost_);
+    const auto sent = skill_ ? skill_->skill.check(checks_.at(number).request, told)
+                             : opcua::failed(opcua::status::kBadConnectionClosed, lost_);
     if (!sent) {
-        told(fail(sent.error()));
+        told(tl::unexpected(sent.error()));
     }
+}
+
+/// A skill that must ask others is asked again.
+void RemoteUsedSkill::checked(std::uint64_t number,
+                              const opcua::Answer<skill::CheckReport>& answer) {
+    const auto open = checks_.find(number);
+    if (!answer && answer.error().code == Errc::timeout &&
+        answer.error().delivery == opcua::Failure::Delivery::answered &&
+        std::chrono::steady_clock::now() < open->second.deadline) {
+        open->second.pause = link_->after(kUsedCheckPause, [this, number] { askCheck(number); });
+        return;
+    }
+    const auto done = std::move(open->second.done);
+    checks_.erase(open);
+    if (!answer) {
+        done(fail(answer.error()));
+        return;
+    }
+    auto report = *answer;
+    report.ends = seenHere(report.ends, serverUrl());
+    done(std::move(report));
 }
 
 void RemoteUsedSkill::compareClocks(std::function<void(Result<composition::ClockOffset>)> done) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,8 +35,8 @@ public:
     std::string reasonText() const override { return reason_text_; }
     bool leftOver() const override { return left_over_; }
     Result<void> reset(composition::UsedSkillListener& listener) override;
-    void check(const skill::ValueMap& parameters,
-               std::function<void(Result<skill::CheckReport>)> done) override;
+    bool runsOthers() const override { return runs_others_; }
+    void check(const skill::CheckRequest& request, skill::CheckDone done) override;
     void compareClocks(std::function<void(Result<composition::ClockOffset>)> done) override;
     void begin(skill::StartRequest request, composition::UsedSkillListener& listener) override;
     Result<void> suspend() override;
@@ -54,6 +55,16 @@ public:
 
 private:
     using UsedSkillEnd = composition::UsedSkillEnd;
+
+    /// A Check that is not answered yet.
+    struct OpenCheck {
+        skill::CheckRequest request;
+        skill::CheckDone done;
+        SteadyTime deadline;
+        skill::Timer pause{};  ///< until it is asked again
+    };
+    void askCheck(std::uint64_t number);
+    void checked(std::uint64_t number, const opcua::Answer<skill::CheckReport>& answer);
 
     bool isOurs(const std::string& execution) const;
     void started(const std::string& id, const opcua::Answer<std::string>& answer);
@@ -85,6 +96,9 @@ private:
     std::string origin_;
     skill::SkillDescription description_;
     std::string lacks_;
+    bool runs_others_ = false;
+    std::map<std::uint64_t, OpenCheck> checks_;  // by their numbers
+    std::uint64_t check_count_ = 0;
     // Shared with the work that waits for the server; null: lost
     std::shared_ptr<OpenSkill> skill_;
     std::string lost_;  // why there is none

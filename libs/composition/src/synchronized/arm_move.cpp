@@ -41,7 +41,7 @@ void ArmMove::ask(Done done) {
         return;
     }
     setup_.arm.pose_move->check(
-        {{"TargetPosition", setup_.target}, {"ToolFrame", setup_.tool_frame}},
+        {.parameters = {{"TargetPosition", setup_.target}, {"ToolFrame", setup_.tool_frame}}},
         whileAlive<CheckReport>([this, done = std::move(done)](const auto& report) {
             if (const auto failed = checkPossible(report)) {
                 done(failed);
@@ -55,7 +55,8 @@ void ArmMove::ask(Done done) {
 /// The skill that will move the arm has the last word.
 void ArmMove::askJointMove(Done done) {
     setup_.arm.joint_move->check(
-        {{"TargetJointPosition", joint_path_.back()}, {"ToolFrame", setup_.tool_frame}},
+        {.parameters = {{"TargetJointPosition", joint_path_.back()},
+                        {"ToolFrame", setup_.tool_frame}}},
         whileAlive<CheckReport>([this, done = std::move(done)](const auto& report) {
             if (const auto failed = checkPossible(report)) {
                 done(failed);

@@ -11,6 +11,13 @@
 
 namespace metier::composition {
 
+/// Target of one arm in a common move.
+struct ArmTarget {
+    Arm& arm;
+    skill::Frame target;
+    std::string tool_frame;
+};
+
 /// Failure of one arm's part of the move.
 struct ArmFailure {
     skill::Reason reason = skill::Reason::error;
@@ -44,11 +51,7 @@ public:
         over,  ///< ended in any other way
     };
     using Done = std::function<void(std::optional<ArmFailure>)>;
-    struct Setup {
-        Arm& arm;
-        skill::Frame target;
-        std::string tool_frame;
-    };
+    using Setup = ArmTarget;
 
     ArmMove(Setup setup, ArmMoveOwner& owner) : setup_(std::move(setup)), owner_(owner) {}
     ~ArmMove() override;

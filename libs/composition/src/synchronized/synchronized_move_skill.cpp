@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "synchronized/synchronized_check.hpp"
 #include "synchronized/synchronized_work.hpp"
 
 namespace metier::composition {
@@ -14,6 +15,8 @@ namespace metier::composition {
 using skill::State;
 
 namespace {
+
+constexpr std::size_t kMostArmChecks = 16;
 
 std::vector<std::string> namesOf(const std::vector<Arm>& arms) {
     std::vector<std::string> names;
@@ -60,6 +63,8 @@ SynchronizedMoveSkill::SynchronizedMoveSkill(std::vector<Arm> arms, Options opti
       arms_(std::move(arms)),
       options_(std::move(options)) {}
 
+SynchronizedMoveSkill::~SynchronizedMoveSkill() = default;
+
 Result<Arm*> SynchronizedMoveSkill::find(const std::string& name) {
     const auto found =
         std::find_if(arms_.begin(), arms_.end(), [&](const Arm& arm) { return arm.name == name; });
@@ -70,10 +75,9 @@ Result<Arm*> SynchronizedMoveSkill::find(const std::string& name) {
     return &*found;
 }
 
-Result<std::unique_ptr<skill::ExecutionWork>> SynchronizedMoveSkill::plan(
-    const Parameters& parameters) {
+Result<std::vector<ArmTarget>> SynchronizedMoveSkill::targetsOf(const Parameters& parameters) {
     METIER_TRY(checkCounts(parameters));
-    SynchronizedWork::Setup setup{options_, {}, parameters.duration};
+    std::vector<ArmTarget> targets;
     std::set<std::string> taken;
     for (std::size_t i = 0; i < parameters.arms.size(); ++i) {
         METIER_ASSIGN(const auto arm, find(parameters.arms[i]));
@@ -82,11 +86,35 @@ Result<std::unique_ptr<skill::ExecutionWork>> SynchronizedMoveSkill::plan(
                         fmt::format("Arms: \"{}\" is there twice", parameters.arms[i]));
         }
         METIER_TRY(checkReachable(*arm));
-        setup.arms.push_back(
+        targets.push_back(
             {*arm, parameters.target_poses[i],
              parameters.tool_frames.empty() ? std::string() : parameters.tool_frames[i]});
     }
-    return std::make_unique<SynchronizedWork>(std::move(setup));
+    return targets;
+}
+
+Result<std::unique_ptr<skill::ExecutionWork>> SynchronizedMoveSkill::plan(
+    const Parameters& parameters) {
+    METIER_ASSIGN(auto targets, targetsOf(parameters));
+    return std::make_unique<SynchronizedWork>(
+        SynchronizedWork::Setup{options_, std::move(targets), parameters.duration});
+}
+
+void SynchronizedMoveSkill::assessFrom(const skill::ArmPositions& starts,
+                                       const Parameters& parameters, skill::CheckDone done) {
+    std::erase_if(checks_, [](const auto& check) { return check->over(); });
+    auto targets = targetsOf(parameters);
+    if (targets && checks_.size() >= kMostArmChecks) {
+        targets = fail(Errc::resource_unavailable,
+                       fmt::format("{} checks are under way", checks_.size()));
+    }
+    if (!targets) {
+        done(fail(targets.error()));
+        return;
+    }
+    checks_.push_back(
+        std::make_unique<SynchronizedCheck>(std::move(*targets), parameters.duration));
+    checks_.back()->start(starts, *options_.executor, std::move(done));
 }
 
 Result<void> SynchronizedMoveSkill::reset() {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "grip/gripper_report.hpp"
 #include "grip/gripper_work.hpp"
 #include "metier/base/numbers.hpp"
 #include "metier/skill/typed_skill.hpp"
@@ -112,6 +113,10 @@ protected:
                 });
             },
             moving_);
+    }
+
+    Result<skill::CheckReport> assess(const GripperParameters& parameters) override {
+        return gripperReport(plan(parameters).map([](const auto& /*work*/) {}));
     }
 
 private:

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "grip/gripper_report.hpp"
 #include "metier/base/numbers.hpp"
 #include "metier/robot_skills/gripper_skills.hpp"
 
@@ -87,6 +88,9 @@ public:
         return checkHeld(gripper_).map([this]() -> std::unique_ptr<skill::ExecutionWork> {
             return std::make_unique<HoldWork>(gripper_, executor_);
         });
+    }
+    Result<skill::CheckReport> check(const skill::ValueMap& /*none*/) override {
+        return gripperReport(checkHeld(gripper_));
     }
     Result<void> reset() override { return {}; }
 

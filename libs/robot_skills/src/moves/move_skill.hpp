@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "conversions.hpp"
@@ -21,6 +22,11 @@ using MakeWork = std::function<Result<std::unique_ptr<skill::ExecutionWork>>(
 
 /// For a skill of that name that moves an arm.
 skill::SkillDescription describeMove(std::string name, std::string description);
+
+/// Where the arm of this server stands when a move begins; none: where it stands now.
+/// Errors: invalid_argument (another number of axes, a value that is not finite, an unknown place).
+Result<std::optional<motion::JointVector>> startIn(const skill::ArmPositions& starts,
+                                                   const MovedArm& arm);
 
 /// Makes the answer of Check from a plan.
 skill::CheckReport reportOf(const motion::Planned<motion::Trajectory>& plan);
@@ -52,17 +58,35 @@ protected:
 
     Result<skill::CheckReport> assess(const Parameters& parameters) override {
         METIER_TRY(checkCanStart(parameters));
-        const auto trajectory = planFromHere(parameters);
+        return report(planFromHere(parameters), parameters);
+    }
+
+    void assessFrom(const skill::ArmPositions& starts, const Parameters& parameters,
+                    skill::CheckDone done) override {
+        done(startIn(starts, arm_).and_then([&](const auto& start) {
+            return start ? assessFrom(*start, parameters) : assess(parameters);
+        }));
+    }
+
+private:
+    /// An arm that will have been moved until then need neither stand nor be ready now.
+    Result<skill::CheckReport> assessFrom(const motion::JointVector& start,
+                                          const Parameters& parameters) const {
+        METIER_TRY(checkStartTime(parameters.start_time, arm_.clock));
+        return report(plan_(arm_.model, start, parameters), parameters);
+    }
+
+    Result<void> checkCanStart(const Parameters& parameters) const {
+        METIER_TRY(checkReady(arm_.arm));
+        return checkStartTime(parameters.start_time, arm_.clock);
+    }
+
+    Result<skill::CheckReport> report(const motion::Planned<motion::Trajectory>& trajectory,
+                                      const Parameters& parameters) const {
         if (trajectory) {
             METIER_TRY(make_work_(*trajectory, parameters));
         }
         return reportOf(trajectory);
-    }
-
-private:
-    Result<void> checkCanStart(const Parameters& parameters) const {
-        METIER_TRY(checkReady(arm_.arm));
-        return checkStartTime(parameters.start_time, arm_.clock);
     }
 
     motion::Planned<motion::Trajectory> planFromHere(const Parameters& parameters) const {

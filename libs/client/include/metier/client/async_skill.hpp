@@ -117,8 +117,11 @@ public:
     /// Calls any method but StartWith, such as Suspend; `done` gets no value. A Suspend or Halt is
     /// answered before standstill.
     opcua::Answer<> call(skill::Method method, Done<> done) const;
-    /// Sends Check; `done` gets its report. Nothing moves.
-    opcua::Answer<> check(const skill::ValueMap& parameters, Done<skill::CheckReport> done) const;
+    /// Sends Check; `done` gets its report. Nothing moves. A composed skill that must ask others
+    /// answers with timeout (delivery: answered) first: ask the same again for the report.
+    opcua::Answer<> check(const skill::CheckRequest& request, Done<skill::CheckReport> done) const;
+    /// Whether the skill runs skills of others, as far as the server publishes it.
+    bool runsOthers() const noexcept;
     /// Sends GetExecution, or reads state and results; `done` gets the record, or the server's
     /// not_found.
     opcua::Answer<> execution(const std::string& id, Done<skill::ExecutionRecord> done) const;

@@ -20,7 +20,8 @@ struct Composition {
     skill::SkillDescription description;
 };
 
-/// Checks names, types, units, ranges and lengths of all bindings against the used skills.
+/// Checks names, types, units, ranges and lengths of all bindings against the used skills. What is
+/// optional and not there is left out: steps, arguments, sources of results.
 /// \param used description of each used skill by its alias
 /// Errors: invalid_argument, with one line "file:line: key: why" for each mistake. Threads: any;
 ///         pure.

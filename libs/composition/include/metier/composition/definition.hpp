@@ -61,6 +61,8 @@ struct Binding {
     ShiftAxes shift_axes = ShiftAxes::base;
     /// The Literal in the type of its target; Null before compose().
     skill::Value constant{};
+    /// Whether it is left out if the called skill has no such parameter; of an argument.
+    bool optional = false;
 };
 
 /// A condition of a choice or a loop.
@@ -183,6 +185,8 @@ struct Use {
     std::optional<double> payload{};
     /// Whether the skill may be reset even if the composed skill did not halt it.
     bool reset = false;
+    /// Whether its steps are left out if nothing serves it.
+    bool optional = false;
 };
 
 /// A parameter or result of the composed skill.
@@ -191,7 +195,8 @@ struct Declaration {
     std::uint32_t line = 0;
     /// Name, type, unit and range.
     skill::Field field{};
-    /// Source of the value; only of a result.
+    /// Source of the value; only of a result. A constant, after compose(), for an optional result
+    /// that the used skill does not give.
     Binding from{};
 };
 

@@ -39,9 +39,8 @@ public:
     /// Resets at once; listener.onReset() follows. The listener replaces an earlier one.
     /// Errors: those of Program::reset(); no call follows then.
     Result<void> reset(UsedSkillListener& listener) override;
-    /// Plans at once, `done` gets the report later; not if this ends before.
-    void check(const skill::ValueMap& parameters,
-               std::function<void(Result<skill::CheckReport>)> done) override;
+    /// Asks the Program at once, `done` gets the report later; not if this ends before.
+    void check(const skill::CheckRequest& request, skill::CheckDone done) override;
     void compareClocks(std::function<void(Result<ClockOffset>)> done) override;
     /// A refused Start is reported by listener.onEnd() with Kind::refused.
     void begin(skill::StartRequest request, UsedSkillListener& listener) override;
@@ -72,7 +71,7 @@ private:
     void post(Tell tell);
     /// Posts `done` to be called with `answer`, outside of the call that is under way.
     template <typename Answer>
-    void answer(std::function<void(Result<Answer>)> done, Answer answer);
+    void answer(std::function<void(Result<Answer>)> done, Result<Answer> answer);
     void end(UsedSkillEnd end);
     /// Outcome for the composed skill; a Reset while Suspended counts as halted.
     UsedSkillEnd endOf(const skill::TransitionEvent& event) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <list>
 #include <map>
 #include <memory>
 #include <string>
@@ -27,6 +28,8 @@ struct BoundSkill final : UsedSkillListener {
     void onReset(const Result<void>& outcome) override { halted_by_us = halted_by_us && !outcome; }
 };
 
+class StepsCheck;
+
 /// Used skills by their aliases.
 using BoundSkills = std::map<std::string, BoundSkill, std::less<>>;
 
@@ -53,6 +56,9 @@ public:
                   std::shared_ptr<skill::Executor> executor, const Clock& clock,
                   std::string origin);
 
+    /// Ends the checks that are under way; their answers do not come.
+    ~SequenceSkill() override;
+
     const skill::SkillDescription& description() const override { return composition_.description; }
     /// Steps and bindings; changed by rebind().
     const Definition& definition() const noexcept { return composition_.definition; }
@@ -60,6 +66,13 @@ public:
     ///         connection_lost, with the name of a used skill that every execution needs and that
     ///         cannot begin.
     Result<std::unique_ptr<skill::ExecutionWork>> prepare(const skill::ValueMap& snapshot) override;
+    /// Asks the used skills, in the order in which the steps would run them, whether they could be
+    /// run; each from where the arms stand after the steps before. What is not known before the run
+    /// is a note.
+    /// Errors, given to `done`: as prepare(); timeout: not all have answered within 10 s, or
+    ///         rebind() has replaced them; resource_unavailable: 16 checks are under way.
+    void checkFrom(const skill::ArmPositions& starts, const skill::ValueMap& snapshot,
+                   skill::CheckDone done) override;
     /// Whether an execution is running or suspended.
     bool underWay() const noexcept { return work_count_.use_count() > 1; }
     /// Replaces the used skills, from the next execution on.
@@ -74,6 +87,7 @@ public:
 
 private:
     Result<void> checkUsable(const std::string& alias) const;
+    Result<void> checkNeeded() const;
     Descriptions descriptionsWith(
         const std::map<std::string, std::unique_ptr<UsedSkill>>& used_skills) const;
 
@@ -83,6 +97,7 @@ private:
     const Clock& clock_;
     std::string origin_;
     std::vector<std::string> needed_;  // aliases that every execution runs
+    std::list<std::unique_ptr<StepsCheck>> checks_;
     // Shared by the work: as many as there are of these, one more than there are work.
     std::shared_ptr<const char> work_count_ = std::make_shared<const char>();
 };

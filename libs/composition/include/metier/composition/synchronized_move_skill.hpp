@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -72,6 +73,9 @@ inline constexpr std::chrono::seconds kRestTime{6};
 /// Deadline to come to rest that the Program of this skill needs.
 inline constexpr std::chrono::seconds kRestDeadline{2 * kRestTime + std::chrono::seconds(1)};
 
+class SynchronizedCheck;
+struct ArmTarget;
+
 /// Moves several arms, each to its pose by a PTP, so that they begin and arrive together.
 ///
 /// Each arm is first asked whether it can reach its pose and how long that takes at least; if one
@@ -88,6 +92,8 @@ class SynchronizedMoveSkill final : public skill::TypedSkill<Parameters, Results
 public:
     /// \param arms at least two, whose joint moves take Duration and StartTime
     SynchronizedMoveSkill(std::vector<Arm> arms, Options options);
+    /// Ends the checks that are under way; their answers do not come.
+    ~SynchronizedMoveSkill() override;
 
     /// Resets those joint moves of the arms that were halted here.
     /// Errors: those of skills of the same process. An error of a skill of another server is
@@ -98,12 +104,19 @@ protected:
     /// Errors: invalid_argument (unknown arm, or one twice; counts that differ), connection_lost,
     /// with the arm's name. The arms' states are not checked here: the arms are asked.
     Result<std::unique_ptr<skill::ExecutionWork>> plan(const Parameters& parameters) override;
+    /// Asks all arms whether they reach their poses, each from where it stands then.
+    /// Errors, given to `done`: as plan(); timeout: not all have answered within 10 s;
+    ///         resource_unavailable: 16 checks are under way.
+    void assessFrom(const skill::ArmPositions& starts, const Parameters& parameters,
+                    skill::CheckDone done) override;
 
 private:
     Result<Arm*> find(const std::string& name);
+    Result<std::vector<ArmTarget>> targetsOf(const Parameters& parameters);
 
     std::vector<Arm> arms_;
     Options options_;
+    std::list<std::unique_ptr<SynchronizedCheck>> checks_;
     UsedSkillListener unheard_;  // of a Reset for which nothing waits: it shows at the next Start
 };
 

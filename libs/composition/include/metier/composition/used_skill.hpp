@@ -108,12 +108,16 @@ public:
     /// Clears a fault; the outcome goes to `listener`.
     /// Errors: those of the skill, where they are known at once; then the listener is not called.
     virtual Result<void> reset(UsedSkillListener& listener) = 0;
-    /// Asks whether begin() with these parameters would succeed now; nothing moves.
+    /// Whether it runs skills of others, so that it may move the arms of any server.
+    virtual bool runsOthers() const { return !description().steps.empty(); }
+    /// Asks whether begin() with these parameters would succeed; nothing moves. The keys of
+    /// `starts` and of the answer's `ends` are addresses as serverUrl(); empty: this process' own
+    /// server.
     /// \param done called once, in a later turn of the owner's thread, unless this is destroyed
     ///             before
-    /// Errors, given to `done`: connection_lost, timeout, the server's.
-    virtual void check(const skill::ValueMap& parameters,
-                       std::function<void(Result<skill::CheckReport>)> done) = 0;
+    /// Errors, given to `done`: not_supported (it has no Check), connection_lost, timeout, the
+    ///                          server's.
+    virtual void check(const skill::CheckRequest& request, skill::CheckDone done) = 0;
     /// Compares the clocks of the used skill's server and of this machine.
     /// \param done as that of check()
     virtual void compareClocks(std::function<void(Result<ClockOffset>)> done) = 0;

@@ -138,10 +138,16 @@ public:
     ///         gone).
     Result<std::string> startWith(const Caller& caller, StartRequest request);
     /// Makes the checks of startWith() and describes the motion. Nothing changes; observers get
-    /// onCheck(). Plans as Start does, so it takes as long.
+    /// onCheck(). Plans as Start does, so it takes as long. Other skills are not asked.
     /// \return a report that is not possible, with the error's text, where startWith() would be
     /// refused
     CheckReport check(const Caller& caller, const ValueMap& parameters);
+    /// As check(), for arms that may stand elsewhere by then; a composed skill asks the skills that
+    /// it uses.
+    /// \param done called once, in this call or later on the owner's thread, not after the end of
+    ///             the Program
+    /// Errors, given to `done`: timeout: the answer is not known; ask again.
+    void check(const Caller& caller, const CheckRequest& request, CheckDone done);
     /// Record of an execution; the last ExecutionHistory::kMost are kept.
     /// Errors: not_found; the text says whether an execution of that id has begun once.
     Result<ExecutionRecord> execution(std::string_view id) const;
@@ -289,6 +295,9 @@ private:
     void startWork();
     void nameDeadlinePassed();
     Result<CheckReport> checkNow(const Caller& caller, const ValueMap& parameters);
+    /// Values of all parameters, if Start would be allowed now.
+    Result<ValueMap> checkable(const Caller& caller, const ValueMap& parameters) const;
+    void noteCheck(const Caller& caller, const ValueMap& parameters, const CheckReport& report);
     Result<void> suspendNow(Cause cause);
     void actOnOwnerLoss(OwnerLossAction action, std::string text);
     void noteInHistory();

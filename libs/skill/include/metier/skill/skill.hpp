@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,12 +40,33 @@ struct SkillDescription {
     OwnerLossAction on_owner_loss = OwnerLossAction::keep_going;
 };
 
+/// Joint positions of arms [rad], axis 1 first. The key is the address of the arm's server; empty:
+/// the arm of the skill's own server. An arm without values stands at an unknown place;
+/// kEveryOtherArm is the key of all arms that are not named.
+using ArmPositions = std::map<std::string, std::vector<double>, std::less<>>;
+/// Key of ArmPositions that stands for all arms that are not named.
+inline constexpr std::string_view kEveryOtherArm = "*";
+
+/// Question of Check.
+struct CheckRequest {
+    /// Parameters by name; those not named take their defaults.
+    ValueMap parameters{};
+    /// Places where arms stand when the skill begins; an arm that is not named stands where it is.
+    ArmPositions starts{};
+
+    /// Whether both ask the same.
+    bool operator==(const CheckRequest&) const = default;
+};
+
 /// Answer of Check: whether Start would succeed, and the motion that it would make.
 struct CheckReport {
     /// Whether Start would succeed now.
     bool possible = true;
     /// Reason why it is not possible, with value, limit and unit; empty if it is.
     std::string reason{};
+    /// Kind of the reason: the name of an Errc, such as "unreachable". Empty if it is possible, or
+    /// if the server does not report it.
+    std::string code{};
     /// Fraction of the path up to the first place that fails, 0 to 1; 1 if nothing fails, 0 if the
     /// values themselves are refused.
     double first_failing_fraction = 1.0;
@@ -57,7 +80,17 @@ struct CheckReport {
     /// Joint positions along the path, one row per sample, axis 1 first [rad]; empty if the skill
     /// moves no arm.
     std::vector<std::vector<double>> joint_path{};
+    /// Places where the arms that it moves stand at the end; empty if it moves none.
+    ArmPositions ends{};
+    /// Whether `ends` names all arms that it moves. If not, they may be anywhere at its end.
+    bool ends_known = false;
+    /// Parts of the execution that could not be checked, each with the reason, for a person.
+    std::vector<std::string> notes{};
 };
+
+/// Receiver of the answer of Check. Errors: timeout: the answer is not known, ask again; any other:
+/// Start would be refused with it.
+using CheckDone = std::function<void(Result<CheckReport>)>;
 
 /// A value of an Input::live parameter that was written while the skill runs.
 struct LiveValue {
@@ -135,6 +168,15 @@ public:
     virtual Result<CheckReport> check(const ValueMap& snapshot) {
         METIER_TRY(prepare(snapshot));
         return CheckReport{};
+    }
+    /// As check(), for a time at which arms may stand elsewhere; also for a skill that must ask
+    /// others first. The default calls check(), whatever `starts` says.
+    /// \param starts places of arms when the skill begins; valid during the call, as is `snapshot`
+    /// \param done   called once, in this call or later on the owner's thread; never after the end
+    ///               of the skill. An answer after the first one has no effect
+    virtual void checkFrom(const ArmPositions& starts, const ValueMap& snapshot, CheckDone done) {
+        static_cast<void>(starts);
+        done(check(snapshot));
     }
     /// Clears a fault, if the device agrees that it is gone. Does not wait for the device.
     /// Errors: timeout: the device has begun and is not done; the next call gives its outcome. Any

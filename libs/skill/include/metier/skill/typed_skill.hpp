@@ -63,6 +63,17 @@ public:
         return assess(parameters);
     }
 
+    /// Makes the struct and calls assessFrom(). Errors, given to `done`: as FieldList::read() and
+    /// assessFrom().
+    void checkFrom(const ArmPositions& starts, const ValueMap& snapshot, CheckDone done) final {
+        const auto parameters = parameters_.read(snapshot);
+        if (parameters) {
+            assessFrom(starts, *parameters, std::move(done));
+        } else {
+            done(fail(parameters.error()));
+        }
+    }
+
     /// Result fields, for work: `execution.finish(skill.results().write(result))`. Lives as long
     /// as the skill.
     const FieldList<Results>& results() const noexcept { return results_; }
@@ -78,6 +89,14 @@ protected:
     virtual Result<CheckReport> assess(const Parameters& parameters) {
         METIER_TRY(plan(parameters));
         return CheckReport{};
+    }
+    /// Answers Check for arms that may stand elsewhere by then, as Skill::checkFrom(). Override it
+    /// in a skill that moves an arm, or that must ask others. The default calls assess().
+    /// \param parameters valid during the call, as is `starts`
+    virtual void assessFrom(const ArmPositions& starts, const Parameters& parameters,
+                            CheckDone done) {
+        static_cast<void>(starts);
+        done(assess(parameters));
     }
 
 private:

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/skill/skill.hpp"
+
+namespace metier::composition {
+
+/// What is known, before a run, of the moment between two of its steps.
+struct Forecast {
+    /// Arms that earlier steps have moved, by the address of their server; no values: not known.
+    skill::ArmPositions arms{};
+    /// Addresses of servers whose skills earlier steps have used.
+    std::set<std::string, std::less<>> used{};
+
+    /// Place of the arm of a server; nothing: where it stands now; no values: not known.
+    std::optional<std::vector<double>> place(std::string_view server) const;
+    /// Whether the place of an arm is not known.
+    bool isLost(std::string_view server) const;
+    /// Whether the place of any arm is not known.
+    bool anyLost() const;
+    /// A skill has moved these arms.
+    void move(const skill::ArmPositions& ends);
+    /// The arm of that server may have been moved to anywhere.
+    void lose(std::string_view server) { arms.insert_or_assign(std::string(server), kNowhere); }
+
+private:
+    static inline const std::vector<double> kNowhere{};
+};
+
+/// Whether all arms stand at the same places, to rounding.
+bool samePlaces(const Forecast& a, const Forecast& b);
+/// After one of two ways, and it is not known which.
+Forecast either(const Forecast& a, const Forecast& b);
+/// After two ways that begin together.
+Forecast both(const Forecast& begin, const Forecast& a, const Forecast& b);
+
+}  // namespace metier::composition

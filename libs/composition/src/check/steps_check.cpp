@@ -1,0 +1,480 @@
+#include "check/steps_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "activity.hpp"
+#include "check/known.hpp"
+#include "rounds.hpp"
+
+namespace metier::composition {
+
+using skill::CheckReport;
+using skill::State;
+
+namespace {
+
+// More would keep used servers busy for long.
+constexpr std::size_t kMostQuestions = 200;
+constexpr std::size_t kMostNotes = 100;
+constexpr std::uint64_t kMostRounds = 20;
+
+/// Whether a refusal of that kind depends only on the parameters and on where the arms stand. All
+/// others may be gone when the step begins.
+bool isLasting(std::string_view code) {
+    constexpr std::array kLasting{Errc::invalid_argument, Errc::type_mismatch, Errc::out_of_range,
+                                  Errc::unreachable,      Errc::not_found,     Errc::not_supported,
+                                  Errc::limit_violated};
+    return std::any_of(kLasting.begin(), kLasting.end(),
+                       [&](Errc lasting) { return toString(lasting) == code; });
+}
+
+/// Places that a used skill is given: those of all arms if it runs skills of others, else that of
+/// its own arm. A server that does not report where its arms end takes none: it is given none.
+skill::ArmPositions startsFor(const UsedSkill& used, const Forecast& before) {
+    skill::ArmPositions starts;
+    for (const auto& [server, place] : before.arms) {
+        const bool its_own = server == used.serverUrl();
+        if (!place.empty() && (its_own || used.runsOthers())) {
+            starts.emplace(server, place);
+        }
+    }
+    return starts;
+}
+
+/// Whether all that its answer depends on is known.
+bool isCertain(const UsedSkill& used, const CheckReport& report, const Forecast& before) {
+    const bool placed = used.runsOthers() ? !before.anyLost() : !before.isLost(used.serverUrl());
+    if (report.code.empty()) {
+        const bool touched =
+            used.runsOthers() ? !before.used.empty() : before.used.contains(used.serverUrl());
+        return placed && !touched;
+    }
+    return placed && isLasting(report.code);
+}
+
+/// Something of the used skill may have moved, and nobody says where it is.
+void lose(const UsedSkill& used, Forecast& forecast) {
+    forecast.used.insert(used.serverUrl());
+    if (used.runsOthers()) {
+        forecast.move({{std::string(skill::kEveryOtherArm), {}}});
+    } else {
+        forecast.lose(used.serverUrl());
+    }
+}
+
+std::string joined(const std::string& texts, const std::string& text) {
+    return texts.empty() ? text : texts + "; " + text;
+}
+
+}  // namespace
+
+StepsCheck::StepsCheck(Setup setup, skill::ValueMap parameters, const skill::ArmPositions& starts)
+    : setup_(setup), scope_(std::move(parameters)) {
+    begin_.move(starts);
+}
+
+StepsCheck::~StepsCheck() {
+    *alive_ = false;
+}
+
+void StepsCheck::start(std::chrono::nanoseconds longest, skill::CheckDone done) {
+    done_ = std::move(done);
+    limit_ = setup_.executor.after(longest, [this, longest] {
+        giveUp(fmt::format("the used skills have not all answered within {} s",
+                           std::chrono::duration<double>(longest).count()));
+    });
+    inOrder(setup_.composition.definition.root.steps, 0, "", {begin_}, [this](Finding found) {
+        CheckReport report{.planned_duration = found.duration, .notes = std::move(notes_)};
+        if (found.refusal) {
+            report.possible = false;
+            report.reason = std::move(found.refusal->text);
+            report.code = std::move(found.refusal->code);
+            report.first_failing_fraction = found.refusal->fraction;
+            report.planned_duration = 0.0;
+        } else {
+            report.ends = std::move(found.after.arms);
+            report.ends_known = true;
+        }
+        finish(std::move(report));
+    });
+}
+
+void StepsCheck::giveUp(const std::string& why) {
+    finish(fail(Errc::timeout, why));
+}
+
+void StepsCheck::finish(Result<CheckReport> report) {
+    limit_.cancel();
+    if (const auto done = std::exchange(done_, nullptr)) {
+        done(std::move(report));
+    }
+}
+
+void StepsCheck::note(std::string text) {
+    const bool known = std::find(notes_.begin(), notes_.end(), text) != notes_.end();
+    if (!known && notes_.size() < kMostNotes) {
+        notes_.push_back(std::move(text));
+    }
+}
+
+const UsedSkill& StepsCheck::usedBy(const Step& step) const {
+    return *setup_.used.find(step.use)->second.skill;
+}
+
+std::string StepsCheck::describe(const Visit& visit) const {
+    return visit.step.kind == StepKind::call
+               ? fmt::format("step {}: {}", visit.path, usedBy(visit.step).name())
+               : fmt::format("step {}", visit.path);
+}
+
+StepsCheck::Finding StepsCheck::impossible(const Visit& visit, const std::string& why) const {
+    return {visit.before, Refusal{fmt::format("{}: {}", describe(visit), why),
+                                  std::string(toString(Errc::invalid_argument))}};
+}
+
+void StepsCheck::checkStep(const Step& step, const std::string& above, Forecast before, Then then) {
+    Visit visit{step, pathOf(above, step.name), std::move(before)};
+    switch (step.kind) {
+        case StepKind::call:
+            return call(std::move(visit), then);
+        case StepKind::sequence:
+            return inOrder(step.steps, 0, visit.path, {std::move(visit.before)}, std::move(then));
+        case StepKind::parallel:
+            return branches(std::move(visit), std::make_shared<std::vector<Finding>>(), then);
+        case StepKind::fallback:
+            return fallback(std::move(visit), 0, "", std::move(then));
+        case StepKind::choice:
+            return choice(std::move(visit), then);
+        case StepKind::loop:
+            return loop(std::move(visit), then);
+        case StepKind::failure:
+            return then(impossible(visit, step.text));
+    }
+}
+
+void StepsCheck::inOrder(const std::vector<Step>& steps, std::size_t index, const std::string& path,
+                         Finding so_far, Then then) {
+    if (index == steps.size() || so_far.refusal) {
+        then(std::move(so_far));
+        return;
+    }
+    checkStep(steps[index], path, std::move(so_far.after),
+              [this, &steps, index, path, before = so_far.duration,
+               then = std::move(then)](Finding found) {
+                  found.duration += before;
+                  inOrder(steps, index + 1, path, std::move(found), then);
+              });
+}
+
+// ---- one used skill -----------------------------------------------------------------------------
+
+Result<skill::ValueMap> StepsCheck::argumentsOf(const Step& step) const {
+    skill::ValueMap values;
+    for (const auto& argument : step.arguments) {
+        const auto* field = skill::findField(usedBy(step).description().parameters, argument.name);
+        if (field == nullptr) {
+            return fail(Errc::invalid_argument, "has no parameter " + argument.name);
+        }
+        auto value = scope_.evaluate(argument.value, field->type);
+        if (!value) {
+            return fail(value.error().code, "has no value: " + value.error().message);
+        }
+        values.emplace(argument.name, std::move(*value));
+    }
+    return values;
+}
+
+void StepsCheck::call(Visit visit, const Then& then) {
+    for (const auto& argument : visit.step.arguments) {
+        if (const auto result = resultIn(argument.value)) {
+            unchecked(std::move(visit),
+                      fmt::format("{} comes from {}, which is not known before the run",
+                                  argument.name, *result),
+                      then);
+            return;
+        }
+    }
+    auto parameters = argumentsOf(visit.step);
+    if (!parameters) {
+        then({std::move(visit.before),
+              Refusal{fmt::format("{} {}", describe(visit), parameters.error().message),
+                      std::string(toString(Errc::invalid_argument))}});
+        return;
+    }
+    ask(std::move(visit), std::move(*parameters), then);
+}
+
+void StepsCheck::ask(Visit visit, skill::ValueMap parameters, Then then) {
+    auto& used = *setup_.used.find(visit.step.use)->second.skill;
+    if (const auto available = used.available(); !available) {
+        unchecked(std::move(visit), "it cannot be reached: " + available.error().message, then);
+    } else if (used.state() != State::ready) {
+        unchecked(std::move(visit), fmt::format("it is {}", toString(used.state())), then);
+    } else if (++questions_ > kMostQuestions) {
+        unchecked(std::move(visit), fmt::format("only {} questions are asked", kMostQuestions),
+                  then);
+    } else {
+        skill::CheckRequest request{std::move(parameters), startsFor(used, visit.before)};
+        used.check(request, [this, alive = alive_, visit = std::move(visit),
+                             then = std::move(then)](const Result<CheckReport>& report) {
+            if (*alive && !over()) {
+                answered(visit, report, then);
+            }
+        });
+    }
+}
+
+void StepsCheck::answered(Visit visit, const Result<CheckReport>& report, const Then& then) {
+    if (!report) {
+        const auto& error = report.error();
+        const bool no_check = error.code == Errc::not_supported;
+        unchecked(std::move(visit), no_check ? "it has no Check" : error.message, then);
+        return;
+    }
+    for (const auto& text : report->notes) {
+        note(fmt::format("{}: {}", describe(visit), text));
+    }
+    if (!report->possible) {
+        refused(std::move(visit), *report, then);
+        return;
+    }
+    const auto& used = usedBy(visit.step);
+    if (!report->ends_known) {
+        lose(used, visit.before);
+    }
+    visit.before.used.insert(used.serverUrl());
+    visit.before.move(report->ends);
+    then({std::move(visit.before), {}, report->planned_duration});
+}
+
+void StepsCheck::refused(Visit visit, const CheckReport& report, const Then& then) {
+    auto& used = usedBy(visit.step);
+    if (isCertain(used, report, visit.before)) {
+        then({std::move(visit.before),
+              Refusal{fmt::format("{} cannot be done: {}", describe(visit), report.reason),
+                      report.code, report.first_failing_fraction}});
+        return;
+    }
+    note(fmt::format("{} is not possible now, and may be possible then: {}", describe(visit),
+                     report.reason));
+    if (!report.ends_known) {
+        lose(used, visit.before);
+    }
+    visit.before.used.insert(used.serverUrl());
+    then({std::move(visit.before)});
+}
+
+void StepsCheck::unchecked(Visit visit, const std::string& why, const Then& then) {
+    note(fmt::format("{} is not checked: {}", describe(visit), why));
+    lose(usedBy(visit.step), visit.before);
+    then({std::move(visit.before)});
+}
+
+// ---- several at the same time -------------------------------------------------------------------
+
+void StepsCheck::branches(Visit visit, Findings findings, const Then& then) {
+    const auto index = findings->size();
+    if (index == visit.step.steps.size()) {
+        then(visit.step.wait_for == WaitFor::all ? merged(visit, *findings)
+                                                 : mergedAny(visit, *findings));
+        return;
+    }
+    const auto& step = visit.step.steps[index];
+    checkStep(step, visit.path, visit.before, [this, visit, findings, then](Finding found) {
+        findings->push_back(std::move(found));
+        branches(visit, findings, then);
+    });
+}
+
+StepsCheck::Finding StepsCheck::merged(const Visit& visit, const std::vector<Finding>& findings) {
+    Finding all{visit.before};
+    for (std::size_t i = 0; i < findings.size(); ++i) {
+        const auto& found = findings[i];
+        if (found.refusal) {
+            return {anyOf(visit.before, findings), found.refusal};
+        }
+        all.after = both(visit.before, all.after, found.after);
+        if (!visit.step.steps[i].background) {
+            all.duration = std::max(all.duration, found.duration);
+        }
+    }
+    return all;
+}
+
+/// After branches that were halted, wherever they were.
+Forecast StepsCheck::anyOf(Forecast before, const std::vector<Finding>& findings) {
+    for (const auto& found : findings) {
+        before = either(before, found.after);
+    }
+    return before;
+}
+
+/// The first branch that succeeds ends the others.
+StepsCheck::Finding StepsCheck::mergedAny(const Visit& visit,
+                                          const std::vector<Finding>& findings) {
+    Finding any{anyOf(visit.before, findings)};
+    std::string refusals;
+    std::optional<double> shortest;
+    for (const auto& found : findings) {
+        if (found.refusal) {
+            refusals = joined(refusals, found.refusal->text);
+        } else {
+            shortest = std::min(shortest.value_or(found.duration), found.duration);
+        }
+    }
+    if (!shortest) {
+        any.refusal = impossible(visit, "no branch can be done: " + refusals).refusal;
+    } else if (!refusals.empty()) {
+        note(refusals);
+    }
+    any.duration = shortest.value_or(0.0);
+    return any;
+}
+
+// ---- one of several -----------------------------------------------------------------------------
+
+/// The next one begins where the one before could not go on.
+void StepsCheck::fallback(Visit visit, std::size_t index, std::string refusals, Then then) {
+    if (index == visit.step.steps.size()) {
+        then(impossible(visit, "nothing is left to try: " + refusals));
+        return;
+    }
+    const auto& step = visit.step.steps[index];
+    checkStep(step, visit.path, visit.before,
+              [this, visit, index, refusals = std::move(refusals),
+               then = std::move(then)](Finding found) {
+                  if (found.refusal) {
+                      auto next = visit;
+                      next.before = std::move(found.after);
+                      fallback(std::move(next), index + 1, joined(refusals, found.refusal->text),
+                               then);
+                      return;
+                  }
+                  if (!refusals.empty()) {
+                      note(refusals);
+                  }
+                  then(std::move(found));
+              });
+}
+
+void StepsCheck::choice(Visit visit, const Then& then) {
+    const auto& condition = *visit.step.condition;
+    if (const auto result = resultIn(condition)) {
+        note(fmt::format("{}: its branch depends on {}, which is not known before the run",
+                         describe(visit), *result));
+        eitherBranch(std::move(visit), then);
+        return;
+    }
+    const auto held = scope_.holds(condition);
+    if (!held) {
+        then(impossible(visit, held.error().message));
+        return;
+    }
+    inOrder(*held ? visit.step.steps : visit.step.otherwise, 0, visit.path,
+            {std::move(visit.before)}, then);
+}
+
+void StepsCheck::eitherBranch(Visit visit, const Then& then) {
+    inOrder(visit.step.steps, 0, visit.path, {visit.before}, [this, visit, then](Finding one) {
+        inOrder(visit.step.otherwise, 0, visit.path, {visit.before},
+                [this, one = std::move(one), then](Finding other) {
+                    for (const auto* branch : std::array<const Finding*, 2>{&one, &other}) {
+                        if (branch->refusal && !(one.refusal && other.refusal)) {
+                            note(branch->refusal->text);
+                        }
+                    }
+                    if (one.refusal || other.refusal) {
+                        then(other.refusal ? one : std::move(other));
+                    } else {
+                        then({either(one.after, other.after),
+                              {},
+                              std::max(one.duration, other.duration)});
+                    }
+                });
+    });
+}
+
+// ---- again and again ----------------------------------------------------------------------------
+
+Result<StepsCheck::Rounds> StepsCheck::roundsOf(const Step& step) const {
+    Rounds rounds{step.at_most.value_or(kMostRounds)};
+    if (step.times && resultIn(*step.times)) {
+        rounds.needed = false;
+    } else if (step.times) {
+        METIER_ASSIGN(const auto times, scope_.number(*step.times));
+        METIER_ASSIGN(const auto whole, wholeRounds(times));
+        rounds = {whole, true};
+    }
+    if (step.condition && resultIn(*step.condition)) {
+        rounds.known = rounds.needed = false;
+    } else if (step.condition) {
+        METIER_ASSIGN(const auto held, scope_.holds(*step.condition));
+        rounds = held ? rounds : Rounds{0, true};
+    }
+    rounds.known = rounds.known && !step.until;
+    return rounds;
+}
+
+void StepsCheck::loop(Visit visit, const Then& then) {
+    const auto rounds = roundsOf(visit.step);
+    if (!rounds) {
+        then(impossible(visit, rounds.error().message));
+        return;
+    }
+    if (!rounds->known) {
+        note(fmt::format("{}: how often it is repeated is not known before the run",
+                         describe(visit)));
+    }
+    auto before = visit.before;
+    round(std::move(visit), *rounds, 1, {std::move(before)}, then);
+}
+
+/// Ends with the first round that begins where the one before began: all others are as that one.
+void StepsCheck::round(Visit visit, Rounds rounds, std::uint64_t number, Finding so_far,
+                       Then then) {
+    // A second round shows where an unknown number of rounds leads to.
+    const auto most = rounds.known ? rounds.most : std::min<std::uint64_t>(rounds.most, 2);
+    if (number > most || so_far.refusal) {
+        then(std::move(so_far));
+        return;
+    }
+    if (number > kMostRounds) {
+        note(fmt::format("{}: rounds after the first {} are not checked", describe(visit),
+                         kMostRounds));
+        so_far.after.move({{std::string(skill::kEveryOtherArm), {}}});
+        then(std::move(so_far));
+        return;
+    }
+    const auto path = fmt::format("{}[{}]", visit.path, number);
+    const auto& steps = visit.step.steps;
+    inOrder(steps, 0, path, {so_far.after},
+            [this, visit, rounds, number, most, so_far, then](Finding found) {
+                const bool maybe = !rounds.known && (number > 1 || !rounds.needed);
+                if (maybe && found.refusal) {
+                    note(found.refusal->text);
+                    then(so_far);
+                    return;
+                }
+                if (maybe) {
+                    then({either(so_far.after, found.after), {}, so_far.duration});
+                    return;
+                }
+                const bool settled = samePlaces(so_far.after, found.after);
+                const auto equal_rounds = settled && rounds.known ? most - number + 1 : 1;
+                found.duration =
+                    so_far.duration + found.duration * static_cast<double>(equal_rounds);
+                if (settled || found.refusal) {
+                    then(std::move(found));
+                    return;
+                }
+                round(visit, rounds, number + 1, std::move(found), then);
+            });
+}
+
+}  // namespace metier::composition
