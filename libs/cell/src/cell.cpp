@@ -101,7 +101,7 @@ void readKind(const TomlTable& table, const std::filesystem::path& folder, Serve
     } else if (kind == "gripper") {
         server.kind = readGripper(table);
     } else if (kind == "move") {
-        const auto move = readMove(table);
+        const auto move = readMove(table, folder);
         checkDiscovers(move.discover, "robot", server.discovery, table);
         server.kind = move;
     } else if (kind == "composition") {

@@ -41,7 +41,7 @@ UsedServer usedServer(const std::string& server);
 /// One text, or a list of them.
 std::vector<std::string> textOrTexts(const TomlTable& table, std::string_view key);
 
-MoveComponent readMove(const TomlTable& table);
+MoveComponent readMove(const TomlTable& table, const std::filesystem::path& folder);
 CompositionServer readComposition(const TomlTable& table, const std::filesystem::path& folder);
 SynchronizedServer readSynchronized(const TomlTable& table);
 /// The table `limits` of a server.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <set>
 
 #include "cell_reading.hpp"
@@ -19,12 +20,27 @@ double readRebindAfter(const TomlTable& table, double preset) {
     return numberWithin(table, "rebind_after", preset, {kShortestAbsence, kLongestAbsence, "s"});
 }
 
+/// Model of a robot whose server does not publish it, and the order of its axes there.
+void readRobotModel(const TomlTable& table, const std::filesystem::path& folder,
+                    MoveComponent& move) {
+    if (table.has("model")) {
+        move.model = pathIn(table, "model", folder);
+    }
+    if (table.has("axes")) {
+        move.axes = table.texts("axes");
+        if (move.model.empty()) {
+            table.reject("axes", "is the order of the joints of a model; there is no \"model\"");
+        }
+    }
+}
+
 }  // namespace
 
-MoveComponent readMove(const TomlTable& table) {
+MoveComponent readMove(const TomlTable& table, const std::filesystem::path& folder) {
     MoveComponent move;
     move.robot = table.text("robot");
     if (move.robot != kDiscover) {
+        readRobotModel(table, folder, move);
         return move;
     }
     move.robot.clear();

@@ -524,6 +524,44 @@ reach = -1.0
     EXPECT_THAT(cell.error().message, HasSubstr("server[1].reach: -1 m is under 0 m"));
 }
 
+TEST_F(CellFile, GivesAMoveComponentTheModelOfARobotThatPublishesNone) {
+    std::ofstream(folder_ / "arm.toml") << "\n";
+    const auto cell = load(R"(
+name = "demo"
+[[server]]
+name = "move"
+kind = "move"
+robot = "opc.tcp://arm:4840"
+model = "arm.toml"
+axes = ["elbow", "base"]
+)");
+    ASSERT_TRUE(cell) << cell.error().message;
+    const auto& move = std::get<MoveComponent>(cell->servers[0].kind);
+    EXPECT_EQ(move.model, folder_ / "arm.toml");
+    EXPECT_THAT(move.axes, ElementsAre("elbow", "base"));
+}
+
+TEST_F(CellFile, TakesAModelOnlyOfAKnownRobotAndAnOrderOnlyOfAModel) {
+    std::ofstream(folder_ / "arm.toml") << "\n";
+    const auto cell = load(R"(
+name = "demo"
+discovery = "opc.tcp://lds:4840"
+[[server]]
+name = "any"
+kind = "move"
+robot = "discover"
+model = "arm.toml"
+[[server]]
+name = "move"
+kind = "move"
+robot = "opc.tcp://arm:4840"
+axes = ["elbow", "base"]
+)");
+    ASSERT_FALSE(cell);
+    EXPECT_THAT(cell.error().message, HasSubstr("server[0].model: unknown key"));
+    EXPECT_THAT(cell.error().message, HasSubstr("server[1].axes: is the order of the joints"));
+}
+
 TEST_F(CellFile, RefusesToDiscoverWithoutAnybodyToAsk) {
     std::ofstream(folder_ / "skill.toml") << "\n";
     const auto cell = load(R"(

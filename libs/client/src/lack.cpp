@@ -11,6 +11,10 @@ std::string_view consequenceOf(Lack lack) noexcept {
             return "another client may write between its parameters and Start";
         case Lack::dead_man:
             return "it goes on if its client dies";
+        case Lack::measured_state:
+            return "the measured position is as old as its server leaves it";
+        case Lack::safety_state:
+            return "a stop of the robot shows only as the end of its stream";
     }
     return "";
 }
@@ -23,6 +27,10 @@ std::string_view toString(Lack lack) noexcept {
             return "atomic start";
         case Lack::dead_man:
             return "dead-man";
+        case Lack::measured_state:
+            return "measured state at the arm's rate";
+        case Lack::safety_state:
+            return "safety state";
     }
     return "";
 }

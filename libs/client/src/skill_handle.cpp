@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <chrono>
+#include <thread>
 #include <utility>
 #include <variant>
 
@@ -26,6 +28,9 @@ using skill::TransitionEvent;
 // between.
 constexpr auto kResetTime = std::chrono::seconds(1);
 constexpr auto kResetPause = std::chrono::milliseconds(10);
+// Longer than a composed skill asks the skills that it uses.
+constexpr auto kCheckTime = std::chrono::seconds(15);
+constexpr auto kCheckPause = std::chrono::milliseconds(10);
 
 /// As OPC UA calls it: `Double`, `Double[]`, `3DFrame`.
 std::string typeNameOf(skill::ValueType type) {
@@ -178,7 +183,8 @@ Answer<> SkillHandle::set(std::string_view name, const skill::Value& value) {
                               : impl_->refused(refusal, name));
 }
 
-Answer<> SkillHandle::setAsync(std::string_view name, const skill::Value& value, UtcTime meant_for,
+Answer<> SkillHandle::setAsync(std::string_view name, const skill::Value& value,
+                               std::optional<UtcTime> meant_for,
                                std::function<void(Answer<>)> done) {
     METIER_ASSIGN(const auto node, impl_->parameter(name));
     return impl_->client.writeAsync(
@@ -271,10 +277,22 @@ Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
     return outputs.empty() ? std::string() : outputs.front().as<std::string>().value_or("");
 }
 
-Answer<skill::CheckReport> SkillHandle::check(const skill::ValueMap& parameters) {
-    METIER_ASSIGN(const auto outputs,
-                  impl_->callMetier(&SkillNodes::check, "Check", {pairsOf(parameters)}));
-    return checkReportFrom(outputs, impl_->address.name);
+Answer<skill::CheckReport> SkillHandle::check(const skill::ValueMap& parameters,
+                                              const skill::ArmPositions& starts) {
+    const auto inputs = checkInputs({parameters, starts});
+    const auto deadline = std::chrono::steady_clock::now() + kCheckTime;
+    for (;;) {
+        const auto outputs = impl_->callMetier(&SkillNodes::check, "Check", inputs);
+        if (outputs) {
+            return checkReportFrom(*outputs, impl_->address.name);
+        }
+        const bool goes_on = outputs.error().code == Errc::timeout &&
+                             outputs.error().delivery == Failure::Delivery::answered;
+        if (!goes_on || std::chrono::steady_clock::now() >= deadline) {
+            return tl::unexpected(outputs.error());
+        }
+        std::this_thread::sleep_for(kCheckPause);
+    }
 }
 
 Answer<skill::ExecutionRecord> SkillHandle::execution(const std::string& id) {

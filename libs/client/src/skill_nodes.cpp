@@ -153,6 +153,8 @@ Answer<> findNodes(Client& client, const SkillAddress& address,
         }
     }
     nodes.methods.at(static_cast<std::size_t>(skill::Method::start_with)) = nodes.start_with;
+    nodes.runs_others =
+        findNamed(children, "Steps") != nullptr || findNamed(children, "UsedSkills") != nullptr;
     return {};
 }
 

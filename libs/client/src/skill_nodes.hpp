@@ -37,6 +37,7 @@ struct SkillNodes {
     opcua::NodeId records;
     LockNodes lock;  ///< of the skill's device; looked for only if the server names no executions
     bool suspendable = true;
+    bool runs_others = false;  ///< it has steps, or used skills below it
     std::vector<FieldNode> parameters;
     std::vector<FieldNode> results;
 

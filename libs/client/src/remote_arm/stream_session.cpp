@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 #include <utility>
 
 namespace metier::client {
@@ -13,18 +14,28 @@ using namespace std::chrono_literals;
 using device::SafetyState;
 
 constexpr const char* kStreamType = "PositionStreamSkillType";
-constexpr const char* kTarget = "TargetJointPosition";
 constexpr const char* kEndOfStream = "EndOfStream";
 constexpr auto kConnectTimeout = 2s;
 constexpr auto kPublishingInterval = 10ms;
 constexpr auto kSafetyInterval = 20ms;
-// A change of the measured arm between two samples that counts as motion [rad].
-constexpr double kMotion = 1e-5;
+// Longest time until a stream of another maker that was halted stands.
+constexpr auto kLongestHalt = 3s;
+
+/// A stream skill, or one of a type below: the published type is abstract.
+Result<bool> isStream(opcua::Client& client, const client::SkillAddress& skill) {
+    if (skill.type_name == kStreamType) {
+        return true;
+    }
+    METIER_ASSIGN(const auto types, client::typeChain(client, skill));
+    return std::any_of(types.begin(), types.end(),
+                       [](const auto& type) { return type.name == kStreamType; });
+}
 
 Result<client::SkillAddress> findStream(opcua::Client& client) {
     METIER_ASSIGN(const auto skills, client::findSkills(client));
     for (const auto& skill : skills) {
-        if (skill.type_name == kStreamType) {
+        METIER_ASSIGN(const auto is_stream, isStream(client, skill));
+        if (is_stream) {
             return skill;
         }
     }
@@ -55,6 +66,15 @@ bool isOfTheRobot(const skill::TransitionEvent& event) {
            (event.reason == skill::Reason::error || event.reason == skill::Reason::device_lost);
 }
 
+StreamTarget targetFor(const PublishedArm& arm, const std::optional<GivenArm>& given) {
+    StreamTarget target;
+    target.places = arm.places;
+    if (given) {
+        target.pose_at = given->pose_at;
+    }
+    return target;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<StreamSession>> StreamSession::open(const RemoteArmOptions& remote,
@@ -66,84 +86,51 @@ Result<std::unique_ptr<StreamSession>> StreamSession::open(const RemoteArmOption
     options.security = remote.security;
     METIER_ASSIGN(auto client, opcua::Client::connect(remote.url, options));
     METIER_ASSIGN(auto address, findStream(*client));
-    METIER_ASSIGN(auto nodes, client::findKinematics(*client, address));
-    METIER_ASSIGN(auto kinematics, client::readKinematics(*client, nodes));
-    if (kinematics.axisCount() > device::kMaxAxes || kinematics.cycle_time <= 0) {
-        return fail(Errc::not_supported,
-                    fmt::format("an arm of {} axes, at most {}; cycle {} s", kinematics.axisCount(),
-                                device::kMaxAxes, kinematics.cycle_time));
+    METIER_ASSIGN(auto arm, findArm(*client, address, remote.given));
+    METIER_ASSIGN(auto stream, client::SkillHandle::open(*client, address));
+    std::optional<ForeignStream> foreign;
+    if (!stream.knowsExecutions()) {
+        METIER_ASSIGN(foreign, findForeignStream(*client, address, targetFor(arm, remote.given)));
     }
-    METIER_ASSIGN(auto stream, client::SkillHandle::open(*client, std::move(address)));
-    std::unique_ptr<StreamSession> session(
-        new StreamSession(std::move(client), std::move(nodes), std::move(kinematics),
-                          std::move(stream), std::move(wake_up)));
+    std::unique_ptr<StreamSession> session(new StreamSession(std::move(client), std::move(arm),
+                                                             std::move(stream), std::move(foreign),
+                                                             std::move(wake_up)));
     METIER_TRY(session->subscribe());
     return session;
 }
 
-StreamSession::StreamSession(std::unique_ptr<opcua::Client> client, client::KinematicsNodes nodes,
-                             opcua_skill::KinematicsData kinematics, client::SkillHandle stream,
+StreamSession::StreamSession(std::unique_ptr<opcua::Client> client, PublishedArm arm,
+                             client::SkillHandle stream, std::optional<ForeignStream> foreign,
                              std::shared_ptr<WakeUp> wake_up)
     : client_(std::move(client)),
-      nodes_(std::move(nodes)),
-      kinematics_(std::move(kinematics)),
+      arm_(std::move(arm)),
       stream_(std::move(stream)),
-      takes_end_(skill::findField(stream_.parameters(), kEndOfStream) != nullptr) {
-    notes_->wake_up = std::move(wake_up);
-}
+      notes_(std::make_shared<Notes>(std::move(wake_up))),
+      foreign_(foreign.has_value()),
+      target_(foreign ? foreign->target : targetFor(arm_, {})),
+      poll_(std::make_unique<ArmPoll>(
+          *client_, arm_, foreign ? std::optional(foreign->program) : std::nullopt, notes_)) {}
 
-void StreamSession::Notes::notePosition(const device::JointArray& position) {
-    note([&](Observed& seen) {
-        seen.sampled = std::chrono::steady_clock::now();
-        if (device::largestDifference(seen.position, position) > kMotion) {
-            seen.moved = seen.sampled;
-        }
-        seen.position = position;
-    });
-}
-
-void StreamSession::Notes::noteBroken(const std::string& why) {
-    note([&](Observed& seen) {
-        if (seen.broken.empty()) {
-            seen.broken = why;
-        }
-    });
-}
-
-void StreamSession::Notes::noteAnswer(const opcua::Answer<>& answer) {
-    // A stream that ended meanwhile refuses; its transition has the reason.
-    if (answer || answer.error().status == opcua::status::kBadInvalidState) {
-        return;
-    }
-    if (answer.error().code == Errc::connection_lost || answer.error().code == Errc::timeout) {
-        noteBroken(answer.error().message);
-        return;
-    }
-    note([&](Observed& seen) { seen.refused = answer.error().message; });
-}
-
-void StreamSession::Notes::noteTransition(const skill::TransitionEvent& event) {
-    note([&](Observed& seen) {
-        if (event.from == skill::State::running) {
-            seen.stream_end = event;
-        }
-        seen.words = isOfTheRobot(event) ? event.reason_text : "";
-    });
-}
-
-void StreamSession::Notes::noteSafety(device::SafetyState safety) {
-    note([&](Observed& seen) {
-        if (seen.safety != safety) {
-            seen.safety = safety;
-            seen.safety_since = std::chrono::steady_clock::now();
-        }
-    });
+std::vector<Lack> StreamSession::lacks() const {
+    // The lock of a device is not taken for a stream.
+    auto lacks = foreign_ ? std::vector{Lack::atomic_start, Lack::dead_man} : std::vector<Lack>();
+    const auto of_arm = arm_.lacks();
+    lacks.insert(lacks.end(), of_arm.begin(), of_arm.end());
+    return lacks;
 }
 
 /// A robot that was stopped before says why in the state of its stream skill alone.
 void StreamSession::subscribeTransitions() {
-    stream_.onTransition(
-        [notes = notes_](const skill::TransitionEvent& event) { notes->noteTransition(event); });
+    stream_.onTransition([notes = notes_, foreign = foreign_](const skill::TransitionEvent& event) {
+        notes->note([&](Observed& seen) {
+            if (!foreign && event.from == skill::State::running) {
+                seen.stream_end = event;
+            }
+            // Another maker's event has no reason: its message is the best there is.
+            const bool has_words = foreign ? event.to == skill::State::halted : isOfTheRobot(event);
+            seen.words = has_words ? event.reason_text : "";
+        });
+    });
     if (stream_.state() == skill::State::halted) {
         auto words = stream_.reasonText();
         notes_->note([&](Observed& seen) { seen.words = std::move(words); });
@@ -154,29 +141,39 @@ Result<void> StreamSession::subscribe() {
     client_->onConnectionLost(
         [notes = notes_](const opcua::Failure& failure) { notes->noteBroken(failure.message); });
     subscribeTransitions();
+    METIER_TRY(poll_->askAndWait());
+    if (!arm_.nodes) {
+        return {};
+    }
+    METIER_TRY(subscribePosition(*arm_.nodes));
+    METIER_TRY(subscribeState(*arm_.nodes));
+    return subscribeStandstill(*arm_.nodes);
+}
+
+Result<void> StreamSession::subscribePosition(const KinematicsNodes& nodes) {
+    const auto axes = arm_.kinematics.axisCount();
     const auto interval = std::chrono::milliseconds(
-        static_cast<std::int64_t>(std::max(kinematics_.cycle_time * 1000.0, 5.0)));
+        static_cast<std::int64_t>(std::max(arm_.kinematics.cycle_time * 1000.0, 5.0)));
     METIER_ASSIGN(joints_, client::subscribeJointPosition(
-                               *client_, nodes_, interval,
-                               [notes = notes_,
-                                axes = kinematics_.axisCount()](const std::vector<double>& values) {
+                               *client_, nodes, interval,
+                               [notes = notes_, axes](const std::vector<double>& values) {
                                    if (values.size() == axes) {
                                        notes->notePosition(device::JointArray(values));
                                    }
                                }));
-    METIER_ASSIGN(const auto now, client::readJointPosition(*client_, nodes_));
-    if (now.size() != kinematics_.axisCount()) {
+    METIER_ASSIGN(const auto now, client::readJointPosition(*client_, nodes));
+    if (now.size() != axes) {
         return fail(Errc::type_mismatch, "ActualJointPosition has another length");
     }
     notes_->notePosition(device::JointArray(now));
-    return subscribeState();
+    return {};
 }
 
-Result<void> StreamSession::subscribeState() {
+Result<void> StreamSession::subscribeState(const KinematicsNodes& nodes) {
     METIER_ASSIGN(
         safety_,
         client_->subscribeData(
-            nodes_.safety_state, {.sampling_interval = kSafetyInterval},
+            nodes.safety_state, {.sampling_interval = kSafetyInterval},
             [notes = notes_](const opcua::DataValue& value) {
                 if (value.value.isEmpty()) {  // the connection or the subscription has ended
                     notes->noteBroken(fmt::format("the safety state is not told any more ({})",
@@ -189,21 +186,21 @@ Result<void> StreamSession::subscribeState() {
             }));
     METIER_ASSIGN(missed_cycles_,
                   client_->subscribeData(
-                      nodes_.missed_cycles, {.sampling_interval = kSafetyInterval},
+                      nodes.missed_cycles, {.sampling_interval = kSafetyInterval},
                       [notes = notes_](const opcua::DataValue& value) {
                           if (const auto cycles = value.value.as<std::uint64_t>()) {
                               notes->note([&](Observed& seen) { seen.missed_cycles = *cycles; });
                           }
                       }));
-    return subscribeStandstill();
+    return {};
 }
 
-Result<void> StreamSession::subscribeStandstill() {
-    if (nodes_.standstill.isNull()) {
+Result<void> StreamSession::subscribeStandstill(const KinematicsNodes& nodes) {
+    if (nodes.standstill.isNull()) {
         return {};
     }
     METIER_ASSIGN(standstill_, client_->subscribeData(
-                                   nodes_.standstill, {.sampling_interval = kPublishingInterval},
+                                   nodes.standstill, {.sampling_interval = kPublishingInterval},
                                    [notes = notes_](const opcua::DataValue& value) {
                                        const auto stands = value.value.as<bool>();
                                        notes->note([&](Observed& seen) {
@@ -213,37 +210,104 @@ Result<void> StreamSession::subscribeStandstill() {
     return {};
 }
 
-StreamSession::Observed StreamSession::observed() const {
-    const std::lock_guard lock(notes_->mutex);
-    return notes_->observed;
-}
-
-Result<void> StreamSession::startStream(const skill::ParentExecution& parent) {
-    notes_->note([](Observed& seen) {
+Result<void> StreamSession::startStream(const skill::ParentExecution& parent,
+                                        const device::JointArray& first) {
+    if (foreign_) {
+        METIER_TRY(presetTarget(first));
+    }
+    notes_->note([this](Observed& seen) {
         seen.stream_end.reset();
         seen.refused.clear();
+        if (foreign_) {
+            seen.words.clear();
+        }
     });
     if (!parent.id.empty() && stream_.takesParents()) {
         METIER_TRY(stream_.startWith({.parent = parent}));
     } else {
         METIER_TRY(stream_.start());
     }
+    if (foreign_) {
+        notes_->noteCommanded(skill::State::running);
+    }
+    return {};
+}
+
+/// Writes the place where the arm stands: the parameter still has the last set-point of the stream
+/// before, to which the arm would go at its Start. A server may refuse SourceTimestamps.
+Result<void> StreamSession::presetTarget(const device::JointArray& first) {
+    const auto value = target_.valueOf(first);
+    // Shared with the client's thread, which answers it once.
+    const auto answered = std::make_shared<std::promise<opcua::Answer<>>>();
+    METIER_TRY(stream_.setAsync(
+        target_.parameter, value,
+        sends_times_ ? std::optional(std::chrono::system_clock::now()) : std::nullopt,
+        [answered](opcua::Answer<> answer) { answered->set_value(std::move(answer)); }));
+    auto written = answered->get_future().get();
+    if (!written && written.error().code == Errc::not_supported && sends_times_) {
+        sends_times_ = false;
+        written = stream_.set(target_.parameter, value);
+    }
+    METIER_TRY(written);
     return {};
 }
 
 void StreamSession::send(const device::JointArray& set_point, UtcTime meant_for) {
-    write(kTarget, std::vector<double>(set_point.begin(), set_point.end()), meant_for);
+    write(target_.parameter, target_.valueOf(set_point),
+          sends_times_ ? std::optional(meant_for) : std::nullopt);
 }
 
-bool StreamSession::endStream() {
-    if (takes_end_) {
+Result<StreamSession::Ending> StreamSession::endStream() {
+    if (skill::findField(stream_.parameters(), kEndOfStream) != nullptr) {
         write(kEndOfStream, true, std::chrono::system_clock::now());
+        return Ending::awaited;
     }
-    return takes_end_;
+    METIER_TRY(haltStream());
+    METIER_TRY(stream_.awaitRest(std::chrono::steady_clock::now() + kLongestHalt));
+    METIER_TRY(resetHalted());
+    return Ending::reached;
+}
+
+Result<void> StreamSession::haltStream() {
+    const auto halted = stream_.halt();
+    // A stream that has ended meanwhile cannot be halted.
+    if (!halted && !(foreign_ && halted.error().status == opcua::status::kBadInvalidState)) {
+        return fail(halted.error());
+    }
+    return {};
+}
+
+Result<void> StreamSession::resetStream(bool stopped) {
+    METIER_ASSIGN(auto state, stream_.state());
+    // A skill that is Ready while its arm is stopped resets the arm by way of Halted; one of
+    // another maker that is Suspended would go on to an old set-point.
+    if (foreign_ ? state == skill::State::suspended : state == skill::State::ready && stopped) {
+        METIER_TRY(stream_.halt());
+        state = skill::State::halted;
+    }
+    if (state == skill::State::halted || stopped) {
+        return resetHalted();
+    }
+    return {};
+}
+
+Result<void> StreamSession::resetHalted() {
+    if (foreign_) {
+        METIER_ASSIGN(const auto state, stream_.state());
+        if (state == skill::State::ready) {
+            notes_->noteCommanded(state);
+            return {};
+        }
+    }
+    METIER_TRY(stream_.reset());
+    if (foreign_) {
+        notes_->noteCommanded(skill::State::ready);
+    }
+    return {};
 }
 
 void StreamSession::write(std::string_view parameter, const skill::Value& value,
-                          UtcTime meant_for) {
+                          std::optional<UtcTime> meant_for) {
     const auto sent = stream_.setAsync(
         parameter, value, meant_for,
         [notes = notes_](const opcua::Answer<>& answer) { notes->noteAnswer(answer); });

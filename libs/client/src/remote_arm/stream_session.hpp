@@ -1,19 +1,19 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "metier/base/clock.hpp"
-#include "metier/client/kinematics_reader.hpp"
 #include "metier/client/remote_arm.hpp"
 #include "metier/client/skill_handle.hpp"
-#include "metier/device/arm.hpp"
 #include "metier/opcua/client.hpp"
-#include "metier/opcua_skill/kinematics_data.hpp"
+#include "remote_arm/arm_poll.hpp"
+#include "remote_arm/notes.hpp"
+#include "remote_arm/published_arm.hpp"
+#include "remote_arm/stream_target.hpp"
 #include "remote_arm/wake_up.hpp"
 
 namespace metier::client {
@@ -23,76 +23,64 @@ namespace metier::client {
 /// Threading: one owner; what comes in is noted by the client's thread, which wakes the owner.
 class StreamSession {
 public:
-    /// Values that the server published last.
-    struct Observed {
-        device::JointArray position;     ///< measured [rad]; empty before the first
-        SteadyTime sampled{};            ///< when `position` came
-        SteadyTime moved{};              ///< when the measured arm was last seen in motion
-        std::optional<bool> standstill;  ///< as the server judges; none if it does not publish it
-        device::SafetyState safety = device::SafetyState::normal;
-        SteadyTime safety_since{};  ///< when `safety` became what it is
-        std::string words;          ///< the robot's own, of why the stream skill is Halted
-        std::uint64_t missed_cycles = 0;
-        /// End of the stream that was started last
-        std::optional<skill::TransitionEvent> stream_end;
-        std::string refused;  ///< why a set-point was refused, since the stream was started
-        std::string broken;   ///< why nothing more will come
-    };
-
     /// \param wake_up notified after each change of what is observed; shared with late answers
     static Result<std::unique_ptr<StreamSession>> open(const RemoteArmOptions& remote,
                                                        std::shared_ptr<WakeUp> wake_up);
 
-    const opcua_skill::KinematicsData& kinematics() const noexcept { return kinematics_; }
-    const std::string& deviceName() const noexcept { return nodes_.device_name; }
-    Observed observed() const;
+    const PublishedArm& arm() const noexcept { return arm_; }
+    Observed observed() const { return notes_->observed(); }
+    std::vector<Lack> lacks() const;
+    /// Reads the values that the server does not publish by itself, at most once in a period.
+    /// Nothing waits.
+    void poll(std::chrono::nanoseconds period) { poll_->ask(period); }
 
-    /// Starts the stream skill; a stream that was halted is not reset here.
+    /// Starts the stream skill; a stream that was halted is not reset here. A stream of another
+    /// maker gets its first set-point before.
     /// \param parent the execution that it is started for, if that is known
-    Result<void> startStream(const skill::ParentExecution& parent);
+    /// \param first  set-point at which the arm stands
+    Result<void> startStream(const skill::ParentExecution& parent, const device::JointArray& first);
     /// Sends a set-point; nothing waits. Its failure shows in observed().
     void send(const device::JointArray& set_point, UtcTime meant_for);
-    /// Writes EndOfStream, without waiting. False if the server ends a stream only by silence.
-    bool endStream();
-    client::SkillHandle& stream() noexcept { return stream_; }
+
+    /// How a stream ends after its last set-point.
+    enum class Ending {
+        awaited,  ///< the skill will be Ready; nothing waited
+        reached,  ///< the skill was halted and is Ready again
+    };
+    /// Ends the stream, by EndOfStream, or else by Halt and Reset, which wait.
+    Result<Ending> endStream();
+    /// Whether the stream is of another maker: it does not end by silence.
+    bool isForeign() const noexcept { return foreign_; }
+    /// Halts the stream. Waits for the answer, not for standstill.
+    Result<void> haltStream();
+    /// Resets the stream skill, by way of Halted if it is not there.
+    /// \param stopped whether the arm is stopped
+    Result<void> resetStream(bool stopped);
+    /// Resets a stream skill that was halted. Waits for the answer.
+    Result<void> resetHalted();
 
 private:
-    StreamSession(std::unique_ptr<opcua::Client> client, client::KinematicsNodes nodes,
-                  opcua_skill::KinematicsData kinematics, client::SkillHandle stream,
+    StreamSession(std::unique_ptr<opcua::Client> client, PublishedArm arm,
+                  client::SkillHandle stream, std::optional<ForeignStream> foreign,
                   std::shared_ptr<WakeUp> wake_up);
-    // Shared with callbacks and answers that are still under way when the session ends.
-    struct Notes {
-        std::mutex mutex;
-        Observed observed;
-        std::shared_ptr<WakeUp> wake_up;
-
-        template <typename Change>
-        void note(Change change) {
-            {
-                const std::lock_guard lock(mutex);
-                change(observed);
-            }
-            wake_up->notify();
-        }
-        void notePosition(const device::JointArray& position);
-        void noteBroken(const std::string& why);
-        void noteAnswer(const opcua::Answer<>& answer);
-        void noteTransition(const skill::TransitionEvent& event);
-        void noteSafety(device::SafetyState safety);
-    };
 
     Result<void> subscribe();
     void subscribeTransitions();
-    Result<void> subscribeState();
-    Result<void> subscribeStandstill();
-    void write(std::string_view parameter, const skill::Value& value, UtcTime meant_for);
+    Result<void> subscribePosition(const KinematicsNodes& nodes);
+    Result<void> subscribeState(const KinematicsNodes& nodes);
+    Result<void> subscribeStandstill(const KinematicsNodes& nodes);
+    Result<void> presetTarget(const device::JointArray& first);
+    void write(std::string_view parameter, const skill::Value& value,
+               std::optional<UtcTime> meant_for);
 
     std::unique_ptr<opcua::Client> client_;
-    client::KinematicsNodes nodes_;
-    opcua_skill::KinematicsData kinematics_;
+    const PublishedArm arm_;
     client::SkillHandle stream_;
-    std::shared_ptr<Notes> notes_ = std::make_shared<Notes>();
-    const bool takes_end_;
+    const std::shared_ptr<Notes> notes_;  // shared with callbacks and answers
+    const bool foreign_;
+    const StreamTarget target_;
+    std::unique_ptr<ArmPoll> poll_;
+    bool sends_times_ = true;  // SourceTimestamps
     opcua::Subscription joints_;
     opcua::Subscription standstill_;
     opcua::Subscription safety_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace metier::client {
@@ -14,10 +15,16 @@ using device::Safety;
 using device::SafetyState;
 
 constexpr auto kIdlePause = 100ms;
+constexpr auto kBusyPause = 10ms;
+// Period of reading what the server of an arm that stands does not publish by itself.
+constexpr auto kIdlePollPeriod = 50ms;
 // Longest time until the server's safety state follows its Reset.
 constexpr auto kResetWait = 2s;
 // Longest wait for the reason of a robot that has stopped; it stands meanwhile.
 constexpr auto kLongestSilence = 100ms;
+// Longest wait for the event of a stream of another maker that is not Running any more: servers
+// publish every 50 to 100 ms. Nothing is sent meanwhile.
+constexpr auto kLongestEvent = 250ms;
 // Longest time until a stream is Ready again after its last set-point.
 constexpr auto kLongestEnding = 2s;
 // Time without a change of the measured position after which the arm counts as standing, where the
@@ -32,16 +39,25 @@ constexpr std::uint64_t kMostCyclesBehind = 50;
 // Distance of the measured arm from the last set-point over which it was moved by someone else
 // [rad].
 constexpr double kMoved = 2e-3;
+// Distance of a measured axis from the last set-point over which it does not follow [rad]: a fast
+// axis that is a quarter of a second late is nearer.
+constexpr double kLost = 0.8;
 
-device::ArmInfo infoOf(const StreamSession& session) {
+device::ArmInfo infoOf(const PublishedArm& arm) {
     device::ArmInfo info;
-    info.name = session.deviceName();
-    for (std::size_t axis = 1; axis <= session.kinematics().axisCount(); ++axis) {
-        info.axis_names.push_back(fmt::format("Axis {}", axis));
-    }
+    info.name = arm.name;
+    info.axis_names = arm.axis_names;
     info.cycle = std::chrono::duration_cast<std::chrono::nanoseconds>(
-        std::chrono::duration<double>(session.kinematics().cycle_time));
+        std::chrono::duration<double>(arm.kinematics.cycle_time));
     return info;
+}
+
+/// "(Error): protective stop". An event of another maker has no reason: "(Halted): protective
+/// stop".
+std::string reasonOf(const skill::TransitionEvent& end) {
+    return fmt::format("({}): {}",
+                       end.reason == skill::Reason::none ? toString(end.to) : toString(end.reason),
+                       end.reason_text);
 }
 
 }  // namespace
@@ -59,8 +75,9 @@ RemoteArmWorker::RemoteArmWorker(RemoteArmOptions options, std::shared_ptr<WakeU
     : options_(std::move(options)),
       wake_up_(std::move(wake_up)),
       session_(std::move(session)),
-      kinematics_(session_->kinematics()),
-      info_(infoOf(*session_)) {
+      arm_(session_->arm()),
+      lacks_(session_->lacks()),
+      info_(infoOf(arm_)) {
     observe();
     publish();
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -138,13 +155,17 @@ void RemoteArmWorker::run(const std::stop_token& stop) {
         }
         takeRequests();
         serveSource();
-        if (stream_ == Stream::running) {
+        if (stream_ == Stream::running && !leaves_running_) {
             cycle();
         }
         publish();
         if (session_ != nullptr) {
+            session_->poll(isBusy() ? info_.cycle : kIdlePollPeriod);
             wake_up_->wait(stop, nextWake());
         }
+    }
+    if (stream_ == Stream::running) {
+        leaveStream();  // nobody else would end a stream of another maker
     }
     letGo(EndCause::disconnected);
 }
@@ -155,7 +176,7 @@ void RemoteArmWorker::reconnect(const std::stop_token& stop) {
         wake_up_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
         return;
     }
-    if (const auto change = changeIn(**session); !change.empty()) {
+    if (const auto change = changeOf((*session)->arm(), arm_, options_.url); !change.empty()) {
         session->reset();  // without its stream nothing of it moves
         noteAbsence(Absence{absence_->since, true});
         enter({SafetyState::disconnected, fmt::format("{}: {}", info_.name, change)});
@@ -167,19 +188,6 @@ void RemoteArmWorker::reconnect(const std::stop_token& stop) {
     fault_.clear();
     fault_is_limit_ = false;
     halted_by_stop_ = false;
-}
-
-std::string RemoteArmWorker::changeIn(const StreamSession& session) const {
-    if (session.deviceName() != info_.name) {
-        return fmt::format("{} has another arm now, {}", options_.url, session.deviceName());
-    }
-    if (session.kinematics().axisCount() != kinematics_.axisCount()) {
-        return fmt::format("{} has another arm now, with {} axes instead of {}", options_.url,
-                           session.kinematics().axisCount(), kinematics_.axisCount());
-    }
-    return session.kinematics() == kinematics_
-               ? ""
-               : fmt::format("{} tells of other kinematics or limits than before", options_.url);
 }
 
 void RemoteArmWorker::noteAbsence(std::optional<Absence> absence) {
@@ -211,29 +219,48 @@ void RemoteArmWorker::observe() {
     answerReset();
 }
 
-void RemoteArmWorker::observeStream(const StreamSession::Observed& seen) {
+void RemoteArmWorker::observeStream(const Observed& seen) {
+    leaves_running_ = seen.skill.value_or(skill::State::running) != skill::State::running;
     if (stream_ == Stream::none) {
         return;
     }
-    if (seen.stream_end) {
-        const auto& end = *seen.stream_end;
-        const bool expected = end.to == skill::State::ready && stream_ == Stream::ending;
-        stream_ = Stream::none;
-        if (expected && done_) {
-            letGo(EndCause::done);
-        }
-        if (!expected && !halted_by_stop_) {
-            fault_ = fmt::format("{}: the position stream ended ({}): {}", info_.name,
-                                 toString(end.reason), end.reason_text);
-            fault_is_limit_ = end.reason == skill::Reason::limit_violated;
-        }
+    if (const auto end = endOf(seen)) {
+        noteEnd(*end);
     } else if (!seen.refused.empty()) {
         fault_ = fmt::format("{}: {}", info_.name, seen.refused);
-        enterEnding();
+        leaveStream();
     }
 }
 
-void RemoteArmWorker::observeArm(const StreamSession::Observed& seen) {
+/// The state of a skill without named executions may be seen before the event that says why.
+std::optional<skill::TransitionEvent> RemoteArmWorker::endOf(const Observed& seen) const {
+    if (seen.stream_end || !leaves_running_) {
+        return seen.stream_end;
+    }
+    if (seen.skill != skill::State::ready && seen.words.empty() && !halted_by_stop_ &&
+        std::chrono::steady_clock::now() - seen.skill_since < kLongestEvent) {
+        return std::nullopt;
+    }
+    skill::TransitionEvent end;
+    end.from = skill::State::running;
+    end.to = *seen.skill;
+    end.reason_text = seen.words.empty() ? "its server does not say why" : seen.words;
+    return end;
+}
+
+void RemoteArmWorker::noteEnd(const skill::TransitionEvent& end) {
+    const bool expected = end.to == skill::State::ready && stream_ == Stream::ending;
+    stream_ = Stream::none;
+    if (expected && done_) {
+        letGo(EndCause::done);
+    }
+    if (!expected && !halted_by_stop_) {
+        fault_ = fmt::format("{}: the position stream ended {}", info_.name, reasonOf(end));
+        fault_is_limit_ = end.reason == skill::Reason::limit_violated;
+    }
+}
+
+void RemoteArmWorker::observeArm(const Observed& seen) {
     const double time = std::chrono::duration<double>(seen.sampled - sampled_).count();
     if (state_.velocity.size() != seen.position.size()) {
         state_.velocity = device::JointArray(seen.position.size());
@@ -249,9 +276,26 @@ void RemoteArmWorker::observeArm(const StreamSession::Observed& seen) {
         device::largestDifference(state_.commanded_position, state_.position) < kAtTarget;
     state_.standstill = judgeStandstill(seen, at_target);
     state_.missed_cycles = seen.missed_cycles;
+    if (stream_ == Stream::running && session_->isForeign() && fault_.empty()) {
+        checkFollowing();
+    }
 }
 
-bool RemoteArmWorker::judgeStandstill(const StreamSession::Observed& seen, bool at_target) const {
+/// An arm of another maker that does not follow is halted: it is blocked, or its arrays have
+/// another order than was thought.
+void RemoteArmWorker::checkFollowing() {
+    for (std::size_t axis = 0; axis < state_.position.size(); ++axis) {
+        const auto away = std::abs(state_.position[axis] - state_.commanded_position[axis]);
+        if (away > kLost) {
+            fault_ = fmt::format("{}: {} is {:.2f} rad away from its set-point, over {} rad",
+                                 info_.name, info_.axis_names[axis], away, kLost);
+            leaveStream();
+            return;
+        }
+    }
+}
+
+bool RemoteArmWorker::judgeStandstill(const Observed& seen, bool at_target) const {
     if (seen.standstill) {
         // While a stream runs, the news may be from before its begin until the arm is at its end.
         return *seen.standstill && (at_target || source_ == nullptr);
@@ -261,7 +305,7 @@ bool RemoteArmWorker::judgeStandstill(const StreamSession::Observed& seen, bool 
     return unmoved > kStandstill || (at_target && (settled_ || unmoved > kStandstillAtTarget));
 }
 
-Safety RemoteArmWorker::judge(const StreamSession::Observed& seen) const {
+Safety RemoteArmWorker::judge(const Observed& seen) const {
     if (!seen.broken.empty()) {
         return {SafetyState::disconnected, fmt::format("{}: the connection to {} is lost: {}",
                                                        info_.name, options_.url, seen.broken)};
@@ -275,11 +319,16 @@ Safety RemoteArmWorker::judge(const StreamSession::Observed& seen) const {
         const bool named = text.starts_with(info_.name);
         return {seen.safety, named ? text : fmt::format("{}: {}", info_.name, text)};
     }
+    const bool halted = seen.skill == skill::State::halted && stream_ == Stream::none;
+    if (halted && !halted_by_stop_) {
+        return {SafetyState::fault, fmt::format("{}: its position stream is Halted{}{}", info_.name,
+                                                seen.words.empty() ? "" : ": ", seen.words)};
+    }
     return {};
 }
 
 /// The state of a stopped robot may be seen before the transition that says why.
-bool RemoteArmWorker::awaitsWords(const StreamSession::Observed& seen) const {
+bool RemoteArmWorker::awaitsWords(const Observed& seen) const {
     return seen.words.empty() && state_.safety == SafetyState::normal &&
            std::chrono::steady_clock::now() - seen.safety_since < kLongestSilence;
 }
@@ -325,17 +374,9 @@ void RemoteArmWorker::beginReset() {
         endReset(fail(Errc::connection_lost, safety().text));
         return;
     }
-    auto& stream = session_->stream();
-    const auto state = stream.state();
-    // A skill that is Ready while its arm is stopped resets the arm by way of Halted.
-    const bool stopped = session_->observed().safety != SafetyState::normal;
-    auto reset =
-        state && *state == skill::State::ready && stopped ? stream.halt() : opcua::Answer<>();
-    if (reset && state && (*state == skill::State::halted || stopped)) {
-        reset = stream.reset();
-    }
-    if (!state || !reset) {
-        endReset(fail(state ? reset.error() : state.error()));
+    if (auto reset = session_->resetStream(session_->observed().safety != SafetyState::normal);
+        !reset) {
+        endReset(std::move(reset));
         return;
     }
     fault_.clear();
@@ -363,7 +404,7 @@ void RemoteArmWorker::endReset(Result<void> outcome) {
 void RemoteArmWorker::stopNow() {
     if (stream_ == Stream::running && session_ != nullptr) {
         halted_by_stop_ = true;
-        if (const auto halted = session_->stream().halt(); !halted) {
+        if (const auto halted = session_->haltStream(); !halted) {
             fault_ = halted.error().message;
         }
         enterEnding();
@@ -386,28 +427,32 @@ void RemoteArmWorker::serveSource() {
 
 void RemoteArmWorker::startStream() {
     if (std::exchange(halted_by_stop_, false)) {
-        if (const auto reset = session_->stream().reset(); !reset) {
+        if (const auto reset = session_->resetHalted(); !reset) {
             fault_ = reset.error().message;
             return;
         }
     }
-    if (const auto started = session_->startStream(parent()); !started) {
+    if (const auto started = session_->startStream(parent(), state_.commanded_position); !started) {
         fault_ = started.error().message;  // the next look at it ends the motion
         return;
     }
     stream_ = Stream::running;
+    leaves_running_ = false;
     stream_start_ = std::chrono::steady_clock::now();
     stream_start_utc_ = std::chrono::system_clock::now();
     sent_ = 0;
 }
 
 SteadyTime RemoteArmWorker::nextWake() const {
-    if (stream_ == Stream::running) {
+    if (stream_ == Stream::running && !leaves_running_) {
         return stream_start_ + sent_ * info_.cycle;
     }
-    // Poll often during a motion or a fault, so that its end and its deadline are seen in time.
-    const bool busy = source_ != nullptr || state_.safety != SafetyState::normal;
-    return std::chrono::steady_clock::now() + (busy ? 10ms : kIdlePause);
+    return std::chrono::steady_clock::now() + (isBusy() ? kBusyPause : kIdlePause);
+}
+
+/// Whether its end or a deadline is to be seen in time: of a motion, or of a fault.
+bool RemoteArmWorker::isBusy() const {
+    return source_ != nullptr || stream_ != Stream::none || state_.safety != SafetyState::normal;
 }
 
 UtcTime RemoteArmWorker::meantFor() const {
@@ -427,8 +472,8 @@ void RemoteArmWorker::cycle() {
 }
 
 void RemoteArmWorker::nextSetPoint() {
-    if (source_ == nullptr) {  // it was taken from the arm: the server ends the stream by itself
-        enterEnding();
+    if (source_ == nullptr) {  // it was taken from the arm
+        leaveStream();
         return;
     }
     state_.cycle = sent_;
@@ -445,8 +490,24 @@ void RemoteArmWorker::nextSetPoint() {
 /// Reports the end to the source once the stream has ended: then the arm is free for the next user.
 void RemoteArmWorker::finishStream() {
     enterEnding();
-    if (!session_->endStream()) {
-        letGo(EndCause::done);  // the silence that ends it is longer than anybody would wait
+    const auto ending = session_->endStream();
+    if (!ending) {
+        fault_ = fmt::format("{}: {}", info_.name, ending.error().message);
+    } else if (*ending == StreamSession::Ending::reached) {
+        stream_ = Stream::none;
+        letGo(EndCause::done);
+    }
+}
+
+/// Leaves a stream before its end. Not every server ends one that is silent.
+void RemoteArmWorker::leaveStream() {
+    enterEnding();
+    if (session_ == nullptr || !session_->isForeign()) {
+        return;
+    }
+    halted_by_stop_ = true;
+    if (const auto halted = session_->haltStream(); !halted) {
+        fault_ = fmt::format("{}: {}", info_.name, halted.error().message);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <stop_token>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "metier/client/remote_arm.hpp"
 #include "metier/device/arm.hpp"
@@ -26,7 +27,11 @@ public:
     RemoteArmWorker(const RemoteArmWorker&) = delete;
     RemoteArmWorker& operator=(const RemoteArmWorker&) = delete;
 
-    const opcua_skill::KinematicsData& kinematics() const noexcept override { return kinematics_; }
+    const opcua_skill::KinematicsData& kinematics() const noexcept override {
+        return arm_.kinematics;
+    }
+    bool usesGivenModel() const noexcept override { return !arm_.nodes.has_value(); }
+    const std::vector<Lack>& lacks() const noexcept override { return lacks_; }
     const device::ArmInfo& info() const noexcept override { return info_; }
     device::ArmState state() const noexcept override { return published_.read(); }
     device::Safety safety() const override { return safety_.safety(); }
@@ -47,16 +52,18 @@ private:
     };
     void run(const std::stop_token& stop);
     void reconnect(const std::stop_token& stop);
-    /// Difference between the arm that the server publishes now and the former arm; empty: none.
-    std::string changeIn(const StreamSession& session) const;
     void noteAbsence(std::optional<Absence> absence);
     void observe();
-    void observeStream(const StreamSession::Observed& seen);
-    void observeArm(const StreamSession::Observed& seen);
+    void observeStream(const Observed& seen);
+    /// End of the stream that runs; nothing while it goes on.
+    std::optional<skill::TransitionEvent> endOf(const Observed& seen) const;
+    void noteEnd(const skill::TransitionEvent& end);
+    void observeArm(const Observed& seen);
+    void checkFollowing();
     /// \param at_target whether the measured arm is at its last set-point
-    bool judgeStandstill(const StreamSession::Observed& seen, bool at_target) const;
-    device::Safety judge(const StreamSession::Observed& seen) const;
-    bool awaitsWords(const StreamSession::Observed& seen) const;
+    bool judgeStandstill(const Observed& seen, bool at_target) const;
+    device::Safety judge(const Observed& seen) const;
+    bool awaitsWords(const Observed& seen) const;
     void enter(device::Safety safety);
     void publish();
     void takeRequests();
@@ -71,15 +78,18 @@ private:
     void cycle();
     void nextSetPoint();
     void finishStream();
+    void leaveStream();
     void enterEnding();
     void letGo(device::EndCause cause);
     SteadyTime nextWake() const;
+    bool isBusy() const;
     UtcTime meantFor() const;
 
     const RemoteArmOptions options_;
     const std::shared_ptr<WakeUp> wake_up_;  // notified by the session's late answers, too
     std::unique_ptr<StreamSession> session_;
-    const opcua_skill::KinematicsData kinematics_;
+    const PublishedArm arm_;
+    const std::vector<Lack> lacks_;
     const device::ArmInfo info_;
     device::SharedValue<device::ArmState> published_;
     device::SafetyPublisher safety_{device::Safety()};
@@ -98,6 +108,7 @@ private:
     std::shared_ptr<device::SetPointSource> source_;
     std::optional<SteadyTime> reset_deadline_;  // deadline of a Reset under way
     Stream stream_ = Stream::none;
+    bool leaves_running_ = false;  // the skill of the stream that runs is not Running any more
     // The source has no more set-points; it gets its end when the stream has ended.
     bool done_ = false;
     bool settled_ = false;  // the last source came to its end, where the arm stands

@@ -140,6 +140,9 @@ private:
             sought_.push_back(use);
             return {};
         }
+        if (!offered && offered.error().code == Errc::not_found && use.optional) {
+            return {};
+        }
         if (!offered) {
             return fail(std::move(offered.error()));
         }

@@ -1,6 +1,7 @@
 #include "kinds/compositions.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <map>
 #include <memory>
@@ -66,7 +67,7 @@ Result<std::map<std::string, skill::Program*>> chooseAll(
             checkWishes(use, server).and_then([&] { return choose(use, programs); });
         if (program) {
             chosen.emplace(use.alias, *program);
-        } else {
+        } else if (!use.optional || program.error().code != Errc::not_found) {
             problems += fmt::format("{}{}:{}: uses.{}: {}", problems.empty() ? "" : "\n",
                                     definition.file, use.line, use.alias, program.error().message);
         }
@@ -155,12 +156,27 @@ std::unique_ptr<composition::UsedSkill> usedOf(SkillHost& host, skill::Program& 
                       .of_this_server = true});
 }
 
-Result<composition::SequenceSkill*> publishSequence(SkillHost& host, const opcua::NodeId& skills,
-                                                    Sequence sequence) {
+namespace {
+
+composition::Descriptions descriptionsOf(const Sequence& sequence) {
     composition::Descriptions descriptions;
     for (const auto& [alias, used] : sequence.used_skills) {
         descriptions.emplace(alias, used->description());
     }
+    for (const auto& use : sequence.definition.uses) {
+        if (use.optional && !descriptions.contains(use.alias)) {
+            spdlog::info("{}: no skill serves {} ({}), its steps are left out",
+                         sequence.definition.name, use.alias, use.type);
+        }
+    }
+    return descriptions;
+}
+
+}  // namespace
+
+Result<composition::SequenceSkill*> publishSequence(SkillHost& host, const opcua::NodeId& skills,
+                                                    Sequence sequence) {
+    const auto descriptions = descriptionsOf(sequence);
     METIER_ASSIGN(auto composed, composition::compose(sequence.definition, descriptions));
     METIER_TRY(declareOwnType(host, sequence.definition, composed.description));
     auto made = std::make_unique<composition::SequenceSkill>(

@@ -99,7 +99,7 @@ std::vector<std::string> RobotSearch::find(const std::vector<std::string>& but) 
 Result<ConnectedRobot> RobotSearch::connectAny() const {
     Result<ConnectedRobot> robot = fail(noneFound(move));
     for (const auto& url : find({})) {
-        robot = connectRobot(url, identity);
+        robot = connectRobot(url, move, identity);
         if (robot) {
             break;
         }
@@ -179,7 +179,7 @@ std::vector<std::string> MoveServer::candidates() const {
 
 /// Nothing moves now: what ran when the robot was lost is Halted.
 Result<void> MoveServer::exchange(const std::string& robot_url) {
-    METIER_ASSIGN(auto robot, connectRobot(robot_url, search_.identity));
+    METIER_ASSIGN(auto robot, connectRobot(robot_url, search_.move, search_.identity));
     const auto name = robot.arm->info().name;
     moves_.reset();  // lets go of the port
     METIER_ASSIGN(moves_, RobotMoves::serve(config_, search_.identity, std::move(robot), names_));
@@ -198,6 +198,14 @@ void MoveServer::tell(const Error& error) {
     }
 }
 
+/// Tells which robot is moved, and what its motions cannot have.
+void tellOf(const std::string& name, const ConnectedRobot& robot) {
+    spdlog::info("{} moves {} ({})", name, robot.arm->info().name, robot.url);
+    if (const auto& lacks = robot.arm->lacks(); !lacks.empty()) {
+        spdlog::warn("{}: {} has {}", robot.url, robot.arm->info().name, explanationOf(lacks));
+    }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Server>> serve(const cell::ServerConfig& config,
@@ -207,8 +215,8 @@ Result<std::unique_ptr<Server>> serve(const cell::ServerConfig& config,
         spdlog::info("{} seeks a robot", config.name);
     }
     METIER_ASSIGN(auto robot, move.discover ? search.first(context.stop)
-                                            : connectRobot(move.robot, context.identity));
-    spdlog::info("{} moves {} ({})", config.name, robot.arm->info().name, robot.url);
+                                            : connectRobot(move.robot, move, context.identity));
+    tellOf(config.name, robot);
     METIER_ASSIGN(auto moves,
                   RobotMoves::serve(config, context.identity, std::move(robot), nullptr));
     return std::make_unique<MoveServer>(config, std::move(search), std::move(moves));

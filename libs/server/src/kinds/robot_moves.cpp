@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
+#include "metier/motion/frame.hpp"
 #include "metier/server/kinematics_conversion.hpp"
 
 namespace metier::server {
@@ -13,15 +16,48 @@ namespace {
 // exactly.
 constexpr double kShare = 0.98;
 
-Result<motion::RobotModel> modelOf(const client::RemoteArm& arm) {
-    const auto position = arm.state().position;
-    const std::vector<double> current(position.begin(), position.end());
-    METIER_ASSIGN(auto chain, toChain(arm.kinematics(), current));
+/// The chain with the share of its limits that motions use.
+motion::ChainDescription reduced(motion::ChainDescription chain) {
     for (auto& joint : chain.joints) {
         joint.limits.velocity *= kShare;
         joint.limits.acceleration *= kShare;
     }
-    return motion::RobotModel::fromChain(std::move(chain));
+    return chain;
+}
+
+/// \param file_model of the robot, if there is one
+Result<motion::RobotModel> modelOf(const client::RemoteArm& arm,
+                                   const std::optional<motion::RobotModel>& file_model) {
+    if (arm.usesGivenModel() && file_model) {
+        return file_model->withChain(reduced(file_model->chain()));
+    }
+    const auto position = arm.state().position;
+    const std::vector<double> current(position.begin(), position.end());
+    METIER_ASSIGN(auto chain, toChain(arm.kinematics(), current));
+    return motion::RobotModel::fromChain(reduced(std::move(chain)));
+}
+
+client::GivenArm givenArm(const motion::RobotModel& model, const cell::MoveComponent& move) {
+    client::GivenArm given;
+    given.kinematics = toKinematicsData(model);
+    for (const auto& joint : model.chain().joints) {
+        given.joint_names.push_back(joint.name);
+    }
+    given.array_order = move.axes;
+    given.pose_at = [kinematics = model.kinematics()](const device::JointArray& joints) {
+        motion::JointVector position(joints.size());
+        std::copy(joints.begin(), joints.end(), position.begin());
+        return motion::toFrame(kinematics.forward(position));
+    };
+    return given;
+}
+
+Result<std::optional<motion::RobotModel>> loadModel(const cell::MoveComponent& move) {
+    if (move.model.empty()) {
+        return std::optional<motion::RobotModel>();
+    }
+    METIER_ASSIGN(auto model, motion::RobotModel::load(move.model));
+    return std::optional(std::move(model));
 }
 
 opcua_skill::MotionDeviceSystemSpec specOf(const std::string& name, const device::ArmInfo& arm) {
@@ -36,12 +72,18 @@ opcua_skill::MotionDeviceSystemSpec specOf(const std::string& name, const device
 
 }  // namespace
 
-Result<ConnectedRobot> connectRobot(const std::string& url, const Identity& identity) {
-    auto arm = client::RemoteArm::connect({.url = url, .security = identity.credentials()});
+Result<ConnectedRobot> connectRobot(const std::string& url, const cell::MoveComponent& move,
+                                    const Identity& identity) {
+    METIER_ASSIGN(const auto file_model, loadModel(move));
+    client::RemoteArmOptions options{.url = url, .security = identity.credentials()};
+    if (file_model) {
+        options.given = givenArm(*file_model, move);
+    }
+    auto arm = client::RemoteArm::connect(std::move(options));
     if (!arm) {
         return fail(arm.error().code, fmt::format("{}: {}", url, arm.error().message));
     }
-    auto model = modelOf(**arm);
+    auto model = modelOf(**arm, file_model);
     if (!model) {
         return fail(model.error().code, fmt::format("{}: {}", url, model.error().message));
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "host/skill_host.hpp"
@@ -20,8 +21,11 @@ struct ConnectedRobot {
     motion::RobotModel model;
 };
 
-/// Errors: the server cannot be reached, or does not publish enough.
-Result<ConnectedRobot> connectRobot(const std::string& url, const Identity& identity);
+/// Connects to the robot of `move`, by its model file if its server publishes no Kinematics.
+/// \param url of the robot's server; another one than that of `move` if it was found
+/// Errors: the server cannot be reached, or does not publish enough; mistakes in the model file.
+Result<ConnectedRobot> connectRobot(const std::string& url, const cell::MoveComponent& move,
+                                    const Identity& identity);
 
 /// An OPC UA server with the move skills of one robot, over its position stream.
 ///

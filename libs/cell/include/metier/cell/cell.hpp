@@ -74,6 +74,11 @@ struct MoveComponent {
     /// Name of a server of the same file, or an `opc.tcp://` address. The component reads the arm's
     /// kinematic chain and limits from there. Empty with `discover`.
     std::string robot;
+    /// The robot's model file, absolute, for a server that does not publish the chain; empty: none.
+    std::filesystem::path model{};
+    /// Names of the model's joints in the order of that server's arrays; empty: by the names of its
+    /// axes.
+    std::vector<std::string> axes{};
     /// Whether it uses a robot found by discovery, and another one when that is gone.
     bool discover = false;
     /// Least reach of a robot that discovery may choose [m]; none: any.

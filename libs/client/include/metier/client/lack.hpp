@@ -16,9 +16,15 @@ enum class Lack {
     atomic_start,
     /// The server does not stop the skill when the client that started it is lost.
     dead_man,
+    /// The server does not publish the arm's state at the rate of its set-points, only as OPC
+    /// 40010-1 has it: position by position.
+    measured_state,
+    /// The server publishes no safety state of the arm.
+    safety_state,
 };
 
-/// Name for lists and JSON: "atomic start", "dead-man". Threads: any; pure.
+/// Name for lists and JSON: "atomic start", "dead-man", "measured state at the arm's rate", "safety
+/// state". Threads: any; pure.
 std::string_view toString(Lack lack) noexcept;
 /// "no atomic start, no dead-man"; empty if nothing is missing. Threads: any; pure.
 std::string textOf(const std::vector<Lack>& lacks);

@@ -72,9 +72,10 @@ public:
     opcua::Answer<> set(std::string_view name, const skill::Value& value);
     /// Writes a live parameter without waiting; for position streams.
     /// \param meant_for time for which the value is meant, by this machine's clock; sent as
-    ///                  SourceTimestamp
+    ///                  SourceTimestamp; none: not sent
     /// \param done runs once, on the client's thread; not called if this returns an error
-    opcua::Answer<> setAsync(std::string_view name, const skill::Value& value, UtcTime meant_for,
+    opcua::Answer<> setAsync(std::string_view name, const skill::Value& value,
+                             std::optional<UtcTime> meant_for,
                              std::function<void(opcua::Answer<>)> done);
 
     /// Calls Start with the parameters that were set. Running has been committed when this returns
@@ -98,9 +99,13 @@ public:
     std::vector<Lack> lacks() const;
     /// Whether startWith() sends the execution on whose behalf it starts: the server keeps records.
     bool takesParents() const noexcept;
-    /// Asks whether startWith() would succeed now; nothing moves.
-    /// Errors: not_supported.
-    opcua::Answer<skill::CheckReport> check(const skill::ValueMap& parameters);
+    /// Asks whether startWith() would succeed now; nothing moves. Asks repeatedly, for up to 15 s,
+    /// while a composed skill asks the skills that it uses.
+    /// \param starts places of arms that will stand elsewhere by then; only for servers whose Check
+    ///               reports where arms end (CheckReport::ends_known)
+    /// Errors: not_supported; timeout.
+    opcua::Answer<skill::CheckReport> check(const skill::ValueMap& parameters,
+                                            const skill::ArmPositions& starts = {});
     /// Record of an execution, also one of another session.
     /// Errors: not_found, not_supported.
     opcua::Answer<skill::ExecutionRecord> execution(const std::string& id);

@@ -1,0 +1,84 @@
+#include "remote_arm/notes.hpp"
+
+#include <chrono>
+
+namespace metier::client {
+namespace {
+
+// A change of the measured arm between two samples that counts as motion [rad].
+constexpr double kMotion = 1e-5;
+
+void enter(Observed& seen, skill::State state) {
+    if (seen.skill != state) {
+        seen.skill = state;
+        seen.skill_since = std::chrono::steady_clock::now();
+    }
+}
+
+}  // namespace
+
+Observed Notes::observed() const {
+    const std::lock_guard lock(mutex_);
+    return observed_;
+}
+
+void Notes::notePosition(const device::JointArray& position) {
+    note([&](Observed& seen) {
+        seen.sampled = std::chrono::steady_clock::now();
+        if (device::largestDifference(seen.position, position) > kMotion) {
+            seen.moved = seen.sampled;
+        }
+        seen.position = position;
+    });
+}
+
+void Notes::noteBroken(const std::string& why) {
+    note([&](Observed& seen) {
+        if (seen.broken.empty()) {
+            seen.broken = why;
+        }
+    });
+}
+
+void Notes::noteAnswer(const opcua::Answer<>& answer) {
+    // A stream that ended meanwhile refuses; its transition has the reason.
+    if (answer || answer.error().status == opcua::status::kBadInvalidState) {
+        return;
+    }
+    if (answer.error().code == Errc::connection_lost || answer.error().code == Errc::timeout) {
+        noteBroken(answer.error().message);
+        return;
+    }
+    note([&](Observed& seen) { seen.refused = answer.error().message; });
+}
+
+void Notes::noteSafety(device::SafetyState safety) {
+    note([&](Observed& seen) {
+        if (seen.safety != safety) {
+            seen.safety = safety;
+            seen.safety_since = std::chrono::steady_clock::now();
+        }
+    });
+}
+
+void Notes::noteCommanded(skill::State state) {
+    note([&](Observed& seen) {
+        ++commands_;
+        enter(seen, state);
+    });
+}
+
+std::uint64_t Notes::commands() const {
+    const std::lock_guard lock(mutex_);
+    return commands_;
+}
+
+void Notes::noteSkill(skill::State state, std::uint64_t commands) {
+    note([&](Observed& seen) {
+        if (commands == commands_) {
+            enter(seen, state);
+        }
+    });
+}
+
+}  // namespace metier::client

@@ -1,0 +1,213 @@
+// A move component over the position stream of another maker: an arm that publishes no Kinematics and
+// has its axes in another order.
+'use strict';
+
+const assert = require('node:assert');
+const fs = require('node:fs');
+const os = require('node:os');
+const path = require('node:path');
+const { after, afterEach, beforeEach, test } = require('node:test');
+const { AttributeIds, OPCUAClient } = require('node-opcua');
+const { runMetier, startProcess, startServer } = require('./metier_process');
+
+const kProgram = path.join(__dirname, 'foreign_arm.js');
+const kModel = path.join(__dirname, '..', '..', 'models', 'ur5.toml');
+const kJoints = ['base', 'shoulder', 'elbow', 'wrist_1', 'wrist_2', 'wrist_3'];
+const kHome = [0, -1.3, 1.75, -2.02, -1.57, 0];
+const kAway = [1.2, -1.0, 1.4, -1.8, -1.2, 0.9];
+const kObjectsFolder = 'ns=0;i=85';
+const kHierarchicalReferences = 'ns=0;i=33';
+const kDeadlineMs = 30000;
+// A killed server is noticed at once, one that is silent after 2 s; the machine may be busy.
+const kNoticedMs = 2500;
+
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'foreign_arm_'));
+let arm;
+let component;
+
+after(() => fs.rmSync(folder, { recursive: true }));
+
+/** A cell file with one move component. @param {string[]} lines besides its name, kind and robot */
+function cellOf(lines) {
+  const file = path.join(folder, `cell${fs.readdirSync(folder).length}.toml`);
+  fs.writeFileSync(file, `
+name = "foreign"
+[[server]]
+name = "move"
+kind = "move"
+robot = "${arm.url}"
+stall_limit = 2.0
+${lines.join('\n')}
+`);
+  return file;
+}
+
+const startComponent = (lines) => startServer(['serve', cellOf(lines), '--server', 'move', '--port', '0']);
+
+beforeEach(async () => {
+  arm = await startProcess(process.execPath, [kProgram]);
+  component = await startComponent([`model = "${kModel}"`]);
+});
+
+afterEach(async () => {
+  await component.stop();
+  await arm.stop();
+});
+
+const move = (joints, ...more) =>
+  runMetier(['run', component.url, 'JointPtpMoveSkill', '--set', `TargetJointPosition=${joints}`, ...more]);
+
+/** Asks until `wanted` says yes; the answer. */
+async function until(what, ask, wanted) {
+  const deadline = Date.now() + kDeadlineMs;
+  let seen;
+  while (Date.now() < deadline) {
+    seen = await ask();
+    if (wanted(seen)) {
+      return seen;
+    }
+  }
+  throw new Error(`${what}: ${JSON.stringify(seen)}`);
+}
+
+const awaitState = (url, skill, state) =>
+  until(`${skill} is ${state}`, async () => (await runMetier(['list', url])).output,
+    (output) => new RegExp(`${skill} +${state}`).test(output));
+
+/** Reads values of the arm's own server, as any client would. */
+async function withArm(work) {
+  const client = OPCUAClient.create({ endpointMustExist: false });
+  await client.connect(arm.url);
+  const session = await client.createSession();
+  try {
+    return await work(await readerOf(session));
+  } finally {
+    await session.close();
+    await client.disconnect();
+  }
+}
+
+async function readerOf(session) {
+  const namespaces = await session.readNamespaceArray();
+  const robotics = namespaces.indexOf('http://opcfoundation.org/UA/Robotics/');
+  const di = namespaces.indexOf('http://opcfoundation.org/UA/DI/');
+  const find = async (names) => {
+    const found = await session.translateBrowsePath({
+      startingNode: kObjectsFolder,
+      relativePath: { elements: names.map((name) => ({
+        referenceTypeId: kHierarchicalReferences, isInverse: false, includeSubtypes: true,
+        targetName: name,
+      })) },
+    });
+    return found.targets[0].targetId;
+  };
+  const at = (index, name) => ({ namespaceIndex: index, name });
+  const system = [at(di, 'DeviceSet'), at(1, 'LabRobot')];
+  const axes = await Promise.all(kJoints.map((joint) => find([
+    ...system, at(robotics, 'MotionDevices'), at(1, 'LabArm'), at(robotics, 'Axes'), at(1, joint),
+    at(di, 'ParameterSet'), at(robotics, 'ActualPosition'),
+  ])));
+  const steps = await find([...system, at(robotics, 'Controllers'), at(1, 'LabController'),
+    at(1, 'Skills'), at(1, 'PositionStreamSkill'), at(1, 'Steps')]);
+  const read = async (nodeIds) => (await session.read(
+    nodeIds.map((nodeId) => ({ nodeId, attributeId: AttributeIds.Value })))).map((each) => each.value.value);
+  return {
+    /** [rad], in the order of the model */
+    joints: async () => (await read(axes)).map((degrees) => (degrees * Math.PI) / 180),
+    /** Largest step of an axis from each set-point of the last stream to the next [rad] */
+    steps: async () => Array.from((await read([steps]))[0]),
+  };
+}
+
+/** Share of the way from kHome to kAway at which the arm is, and the distance from that way [rad]. */
+function placeOnTheWay(joints) {
+  const way = kAway.map((value, axis) => value - kHome[axis]);
+  const gone = joints.map((value, axis) => value - kHome[axis]);
+  const dot = (a, b) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
+  const share = dot(gone, way) / dot(way, way);
+  return { share, off: Math.max(...gone.map((value, axis) => Math.abs(value - share * way[axis]))) };
+}
+
+const awaitOnTheWay = (reader) =>
+  until('the arm moves', reader.joints, (joints) => placeOnTheWay(joints).share > 0.1);
+
+test('says at its start what cannot be had, as list does', async () => {
+  assert.match(component.log(), /LabArm has no atomic start .*no dead-man .*no measured state/);
+  assert.match((await runMetier(['list', arm.url])).output,
+    /PositionStreamSkill +Ready +no atomic start, no dead-man/);
+});
+
+test('moves the arm to where the model says, each axis by its name', async () => {
+  const { status, errors } = await move(kAway);
+  assert.strictEqual(status, 0, errors);
+  const joints = await withArm((reader) => reader.joints());
+  joints.forEach((value, axis) => assert.ok(Math.abs(value - kAway[axis]) < 1e-3, `${joints}`));
+  await awaitState(arm.url, 'PositionStreamSkill', 'Ready');
+});
+
+test('moves the arm along the square', async () => {
+  const { status, output, errors } = await runMetier(
+    ['square', component.url, '--json', '--svg', path.join(folder, 'square.svg')]);
+  assert.strictEqual(status, 0, errors);
+  const [square] = JSON.parse(output);
+  assert.ok(square.deviation_mm < 1, output);
+  assert.ok(square.closure_mm < 1, output);
+});
+
+test('a Halt in the middle stops on the path, braked by set-points', async () => {
+  await withArm(async (reader) => {
+    const moving = move(kAway);
+    await awaitOnTheWay(reader);
+    assert.strictEqual((await runMetier(['halt', component.url])).status, 0);
+    assert.notStrictEqual((await moving).status, 0);
+    const { share, off } = placeOnTheWay(await reader.joints());
+    assert.ok(share < 0.9, `it stopped at ${share} of the way`);
+    assert.ok(off < 2e-3, `it stopped ${off} rad beside the way`);
+    const steps = await reader.steps();
+    const largest = Math.max(...steps);
+    assert.ok(steps.at(-1) < largest / 20, `the last steps were ${steps.slice(-5)} of ${largest} rad`);
+  });
+  await awaitState(arm.url, 'PositionStreamSkill', 'Ready');
+});
+
+test('a Halt of the stream halts the move, which goes again after its Reset', async () => {
+  await withArm(async (reader) => {
+    const moving = move(kAway);
+    await awaitOnTheWay(reader);
+    assert.strictEqual((await runMetier(['halt', arm.url])).status, 0);
+    const { status, errors } = await moving;
+    assert.notStrictEqual(status, 0);
+    assert.match(errors, /LabArm: the position stream ended \(Halted\): Halt was called/);
+  });
+  assert.strictEqual((await runMetier(['reset', component.url, 'JointPtpMoveSkill'])).status, 0);
+  const { status, errors } = await move(kHome);
+  assert.strictEqual(status, 0, errors);
+});
+
+test('the death of the server halts the move within the told time', async () => {
+  let died;
+  const moving = move(kAway);
+  await withArm(async (reader) => {
+    await awaitOnTheWay(reader);
+    died = Date.now();
+    await arm.kill();
+  }).catch((error) => assert.ok(died, error));
+  const { status, errors } = await moving;
+  const noticed = Date.now() - died;
+  assert.notStrictEqual(status, 0);
+  assert.match(errors, /LabArm: the connection to \S+ is lost/);
+  assert.ok(noticed < kNoticedMs, `after ${noticed} ms`);
+  assert.match((await runMetier(['list', component.url])).output, /JointPtpMoveSkill +Halted/);
+});
+
+for (const [lines, reason] of [
+  [[], /belongs to no arm that publishes Kinematics, and no model is given/],
+  [[`model = "${kModel.replace('ur5', 'iiwa7')}"`], /the numbers of axes differ/],
+  [[`model = "${kModel}"`, `axes = ["base", "shoulder"]`], /is no order of the joints/],
+]) {
+  test(`is refused: ${reason}`, async () => {
+    const refused = await runMetier(['serve', cellOf(lines), '--server', 'move', '--port', '0']);
+    assert.notStrictEqual(refused.status, 0);
+    assert.match(refused.errors, reason);
+  });
+}
