@@ -4,8 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "metier/skill/lambda_skill.hpp"
-#include "skill_program.hpp"
+#include "metier/server/own_server.hpp"
 
 namespace metier::example {
 namespace {
@@ -58,31 +57,27 @@ skill::SkillDescription captureImage() {
                          .place = skill::Place::final_result}}};
 }
 
-std::vector<Offered> skillsOf(std::shared_ptr<skill::Executor> executor) {
-    const auto camera = std::make_shared<Camera>(std::move(executor));
-    std::vector<Offered> offered;
-    offered.push_back(
-        {std::make_unique<skill::LambdaSkill>(
-             captureImage(),
-             skill::SkillFunctions{
-                 .start =
-                     [camera](const ValueMap& values, const ExecutionHandle& execution) {
-                         camera->capture(std::get<double>(values.at("ExposureTime")), execution);
-                     },
-                 .halt =
-                     [camera](const ExecutionHandle& execution) {
-                         camera->stop();
-                         execution.atRest();
-                     }}),
-         {"inspect"}});
-    return offered;
-}
-
 }  // namespace
 }  // namespace metier::example
 
 int main(int argc, char** argv) {
-    using namespace metier::example;
-    return serve({"camera", "A camera over the conveyor.", "urn:example:camera", skillsOf}, argc,
-                 argv);
+    using namespace metier;
+    server::OwnServer own(argc, argv,
+                          {.name = "camera",
+                           .description = "A camera over the conveyor.",
+                           .types = "urn:example:camera",
+                           .port = 48463});
+    example::Camera camera(own.executor());
+    own.offer(example::captureImage(),
+              {.start =
+                   [&camera](const auto& values, const auto& execution) {
+                       camera.capture(std::get<double>(values.at("ExposureTime")), execution);
+                   },
+               .halt =
+                   [&camera](const auto& execution) {
+                       camera.stop();
+                       execution.atRest();
+                   }},
+              {.terms = {"inspect"}});
+    return own.run();
 }

@@ -93,6 +93,22 @@ TEST_F(CompositionOfACell, IsRefusedWhereNobodyOffersWhatItUses) {
                 HasSubstr("swing.toml:6: uses.arm: no skill of type JointPtpMoveSkillType"));
 }
 
+TEST_F(CompositionOfACell, GoesWithoutAnOptionalSkillThatNobodyOffers) {
+    const auto arm = serve(config("iiwa", iiwa()));
+    ASSERT_TRUE(arm);
+    const auto file = swing(R"([uses.grip]
+type = "GraspGripperSkillType"
+optional = true
+[[step]]
+name = "grasp"
+run = "grip")");
+    const auto server = serve(composed({file}, {{"iiwa", arm->url()}}));
+    ASSERT_TRUE(server);
+    const auto client = connect(*server);
+    expectToMove(*client, "SwingSkill");
+    EXPECT_THAT(usesOf(*client, "SwingSkill"), SizeIs(1));
+}
+
 TEST_F(CompositionOfACell, IsRefusedWhereSeveralOfferItUnlessItNamesOne) {
     const auto left = serve(config("left", iiwa()));
     const auto right = serve(config("right", iiwa()));

@@ -80,7 +80,7 @@ TEST_F(ForeignRecord, HoldsWhatWasStartedWhereAndForWhom) {
     EXPECT_EQ(record.controller, "Torch");
     EXPECT_EQ(record.skill, "Weld");
     EXPECT_EQ(record.parent, "cell.Weld/1");
-    EXPECT_EQ(record.parameters, R"({"Current":90.0})");
+    EXPECT_EQ(record.parameters, R"({"Current":90})");
     EXPECT_EQ(record.state, "Ready");
     EXPECT_EQ(record.reason, "Finished");
     EXPECT_EQ(record.result, R"({"Length":0.25})");
@@ -90,7 +90,8 @@ TEST_F(ForeignRecord, HoldsWhatWasStartedWhereAndForWhom) {
 TEST_F(ForeignRecord, SaysWhatTheServerLacks) {
     begin();
     weld_->finish();
-    const auto transitions = store().transitions(row().number).value();
+    const auto record = row();
+    const auto transitions = store().transitions(record.number).value();
     ASSERT_EQ(transitions.size(), 1U);
     EXPECT_EQ(transitions[0].to, "Running");
     EXPECT_THAT(transitions[0].reason_text, HasSubstr("no atomic start, no dead-man"));
@@ -107,7 +108,8 @@ TEST_F(ForeignRecord, HasEachSuspendAndResume) {
     EXPECT_EQ(record.reason, "ByClient");
     EXPECT_EQ(record.reason_text, "by the panel");
     std::vector<std::string> states;
-    for (const auto& transition : store().transitions(record.number).value()) {
+    const auto transitions = store().transitions(record.number).value();
+    for (const auto& transition : transitions) {
         states.push_back(transition.from + " to " + transition.to);
     }
     EXPECT_THAT(states,

@@ -69,6 +69,25 @@ TEST_F(MoveComponentOfACell, IsRefusedAnArmWithoutAPositionStream) {
     EXPECT_THAT(refusal(movesOf(*arm)).message, HasSubstr(arm->url()));
 }
 
+TEST_F(MoveComponentOfACell, BelievesThePublishedKinematicsMoreThanAModelFile) {
+    const auto arm = serve(config("ur5", streamedUr()));
+    ASSERT_TRUE(arm);
+    const auto moves =
+        serve(config("ur5-move", cell::MoveComponent{.robot = arm->url(),
+                                                     .model = METIER_MODELS_DIR "/iiwa7.toml"}));
+    ASSERT_TRUE(moves);
+    expectToMove(*connect(*moves));
+}
+
+TEST_F(MoveComponentOfACell, SaysWhatIsWrongInTheModelOfItsRobot) {
+    const auto arm = serve(config("ur5", streamedUr()));
+    ASSERT_TRUE(arm);
+    const auto file = write("arm.toml", "name = 1\n");
+    const auto wrong =
+        config("move", cell::MoveComponent{.robot = arm->url(), .model = file.string()});
+    EXPECT_THAT(refusal(wrong).message, HasSubstr("arm.toml:1"));
+}
+
 TEST_F(MoveComponentOfACell, FindsARobotByDiscovery) {
     const auto discovery = discoveryServer();
     auto arm = config("ur5", streamedUr());

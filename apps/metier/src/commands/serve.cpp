@@ -1,9 +1,7 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -12,7 +10,7 @@
 #include "metier/link/stop_signal.hpp"
 #include "metier/server/ready_line.hpp"
 #include "metier/server/server.hpp"
-#include "metier/server/user_folders.hpp"
+#include "metier/server/state_choice.hpp"
 #include "recorded.hpp"
 #include "security_options.hpp"
 
@@ -38,33 +36,6 @@ struct ServeOptions {
     std::string records;
     std::string metrics;
 };
-
-/// Folder for the server's state. A server on any free port is another one each time, and keeps no
-/// state unless a folder is given.
-std::filesystem::path stateFolder(const ServeOptions& options, std::uint16_t port) {
-    if (!options.state.empty()) {
-        return options.state;
-    }
-    const auto folder = port == 0 ? std::filesystem::path() : server::userStateFolder();
-    std::error_code error;
-    if (!folder.empty() && !std::filesystem::create_directories(folder, error) && error) {
-        spdlog::warn("{}: {}; after a restart a repeated StartWith may start again",
-                     folder.string(), error.message());
-        return {};
-    }
-    return folder;
-}
-
-/// Sets the default store for records: in the state folder, unless one is given.
-void chooseRecords(const ServeOptions& options, cell::ServerConfig& config) {
-    auto& url = config.records.url;
-    url = options.records.empty() ? url : options.records;
-    if (url == "off") {
-        url.clear();
-    } else if (url.empty() && !config.state_folder.empty()) {
-        url = (config.state_folder / "records.db").string();
-    }
-}
 
 Result<void> chooseMetrics(const ServeOptions& options, cell::ServerConfig& config) {
     if (options.metrics == "off") {
@@ -130,8 +101,7 @@ Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell, const Serv
     }
     auto config = *server;
     config.port = options.port.value_or(config.port);
-    config.state_folder = stateFolder(options, config.port);
-    chooseRecords(options, config);
+    server::chooseState(config, {.folder = options.state, .records = options.records});
     METIER_TRY(chooseMetrics(options, config));
     if (auto* move = config.as<cell::MoveComponent>(); move != nullptr && !options.robot.empty()) {
         move->robot = options.robot;

@@ -84,7 +84,7 @@ Result<std::vector<Assignment>> assign(const std::vector<composition::Use>& uses
             });
         if (taken != assignments.end()) {
             taken->uses.push_back(use);
-        } else {
+        } else if (!use.optional) {
             problems += fmt::format("{}uses.{}: {}", problems.empty() ? "" : "\n", use.alias,
                                     choose(use, all).error().message);
         }

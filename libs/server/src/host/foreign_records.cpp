@@ -70,9 +70,9 @@ public:
     State state() const override { return used_->state(); }
     std::string reasonText() const override { return used_->reasonText(); }
     bool leftOver() const override { return used_->leftOver(); }
-    void check(const skill::ValueMap& parameters,
-               std::function<void(Result<skill::CheckReport>)> done) override {
-        used_->check(parameters, std::move(done));
+    bool runsOthers() const override { return used_->runsOthers(); }
+    void check(const skill::CheckRequest& request, skill::CheckDone done) override {
+        used_->check(request, std::move(done));
     }
     void compareClocks(std::function<void(Result<composition::ClockOffset>)> done) override {
         used_->compareClocks(std::move(done));
