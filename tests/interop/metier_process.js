@@ -2,6 +2,9 @@
 'use strict';
 
 const { execFile, spawn } = require('node:child_process');
+const fs = require('node:fs');
+const os = require('node:os');
+const path = require('node:path');
 const readline = require('node:readline');
 
 const kReadyTimeoutMs = 60000;
@@ -17,8 +20,9 @@ function metierProgram() {
 }
 
 /**
- * @typedef {{url: string, stop: () => Promise<void>, kill: () => Promise<void>}} Running stop() lets
- *     it end in order, kill() does not; both wait until it has ended
+ * @typedef {{url: string, stop: () => Promise<void>, kill: () => Promise<void>, log: () => string}}
+ *     Running stop() lets it end in order, kill() does not; both wait until it has ended. log() is
+ *     what it has said on its standard error so far
  */
 
 /**
@@ -27,7 +31,12 @@ function metierProgram() {
  * @returns {Promise<Running>} once clients may connect
  */
 function startProcess(program, args) {
-  const child = spawn(program, args, { stdio: ['ignore', 'pipe', 'inherit'] });
+  const child = spawn(program, args, { stdio: ['ignore', 'pipe', 'pipe'] });
+  let log = '';
+  child.stderr.setEncoding('utf8').on('data', (text) => {
+    log += text;
+    process.stderr.write(text);
+  });
   const ended = new Promise((resolve) => child.once('exit', resolve));
   const end = (signal) => async () => {
     child.kill(signal);
@@ -42,7 +51,7 @@ function startProcess(program, args) {
       clearTimeout(timer);
       const match = /^ready ((?:opc\.tcp|http):\S+)$/.exec(line);
       return match
-        ? resolve({ url: match[1], stop: end('SIGTERM'), kill: end('SIGKILL') })
+        ? resolve({ url: match[1], stop: end('SIGTERM'), kill: end('SIGKILL'), log: () => log })
         : reject(new Error(`unexpected: ${line}`));
     });
     child.once('error', reject);
@@ -108,4 +117,41 @@ function startMetier(args, begun) {
   });
 }
 
-module.exports = { runMetier, startMetier, startProcess, startServer };
+/**
+ * Starts all processes of a cell, with free ports and addresses.
+ *
+ * @param {string} cell a cell file
+ * @returns {Promise<{servers: {name: string, url: string}[], stop: () => Promise<void>}>} once all
+ *     are ready
+ */
+function startCell(cell) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'cell-'));
+  const endpoints = path.join(folder, 'endpoints.json');
+  const child = spawn(metierProgram(), [...kLab, 'up', cell, '--free-ports', '--endpoints', endpoints],
+    { stdio: ['ignore', 'pipe', 'inherit'] });
+  const ended = new Promise((resolve) => child.once('exit', resolve));
+  const stop = async () => {
+    child.kill('SIGINT');
+    await ended;
+    fs.rmSync(folder, { recursive: true });
+  };
+  return new Promise((resolve, reject) => {
+    const timer = setTimeout(() => {
+      child.kill('SIGINT');
+      reject(new Error(`the cell was not up within ${kReadyTimeoutMs} ms`));
+    }, kReadyTimeoutMs);
+    readline.createInterface({ input: child.stdout }).on('line', (line) => {
+      if (line.startsWith('the cell is up')) {
+        clearTimeout(timer);
+        resolve({ servers: JSON.parse(fs.readFileSync(endpoints, 'utf8')).servers, stop });
+      }
+    });
+    child.once('error', reject);
+    child.once('exit', (status) => {
+      clearTimeout(timer);
+      reject(new Error(`the cell ended with status ${status}`));
+    });
+  });
+}
+
+module.exports = { runMetier, startCell, startMetier, startProcess, startServer };
