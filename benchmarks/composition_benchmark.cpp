@@ -162,7 +162,8 @@ private:
                                   .source_name = "Weld",
                                   .time = std::chrono::system_clock::now(),
                                   .severity = 100,
-                                  .message = {"", "Weld"}}));
+                                  .message = {"", "Weld"},
+                                  .fields = {}}));
         return {};
     }
 

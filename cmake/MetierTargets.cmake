@@ -128,6 +128,8 @@ function(metier_add_benchmark name)
     add_executable(${name} ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} benchmark::benchmark metier::warnings)
     target_include_directories(${name} PRIVATE src)
+    # Helpers of two files may have one name.
+    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
 endfunction()
 
 option(METIER_FUZZ "Build the fuzz targets as libFuzzer programs; needs clang" OFF)

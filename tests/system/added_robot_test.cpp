@@ -1,5 +1,5 @@
 // The robot of docs/guide/add-a-robot.md: its driver and its virtual controller are built from
-// examples/add_a_robot, and it behaves as every other robot.
+// examples/05_robot, and it behaves as every other robot.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -15,7 +15,7 @@ using skill::State;
 using ::testing::HasSubstr;
 
 std::filesystem::path ternCell() {
-    return std::filesystem::path(METIER_SOURCE_DIR) / "examples" / "add_a_robot" / "cell.toml";
+    return std::filesystem::path(METIER_SOURCE_DIR) / "examples" / "05_robot" / "cell.toml";
 }
 
 TEST(AddedRobot, MovesAlongASquare) {

@@ -239,7 +239,8 @@ TEST(FoundServersOfAFolder, AreThoseOfItsCellFile) {
         "name = \"here\"\n[[server]]\nname = \"iiwa\"\nkind = \"arm\"\n"
         "port = {}\ndriver = {{ type = \"simulator\" }}\n"
         "model = \"{}/models/iiwa7.toml\"\nnodeset = \"iiwa\"\n"
-        "skills = [\"JointPtpMoveSkill\"]\nstall_limit = 2.0\n",
+        "skills = [\"CartesianPtpMoveSkill\", \"CartesianLinearMoveSkill\", \"JointPtpMoveSkill\", "
+        "\"JointLinearMoveSkill\"]\nstall_limit = 2.0\n",
         port, METIER_SOURCE_DIR);
     const ServerProcess arm("iiwa", {}, folder / "cell.toml");
     std::vector<std::string> command{"env", "-C", folder.string()};
@@ -262,6 +263,32 @@ TEST(FoundServersOfNobody, AreAFailureThatSaysWhereItLooked) {
         EXPECT_EQ(refused.status, 1) << line.front();
         EXPECT_THAT(refused.output, HasSubstr("discovery server opc.tcp://127.0.0.1:1: "));
     }
+}
+
+std::string compositionFile(const std::string& name) {
+    return (std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "compositions" / name)
+        .string();
+}
+
+TEST_F(Find, NamesWhatFitsEachSkillThatACompositionUses) {
+    ASSERT_TRUE(known_);
+    const auto found = find({compositionFile("corner.toml")});
+    EXPECT_EQ(found.status, 0) << found.output;
+    EXPECT_THAT(found.output, HasSubstr("ptp: CartesianPtpMoveSkillType\n" + strong_.url()));
+    EXPECT_THAT(found.output, HasSubstr("IiwaController/CartesianPtpMoveSkill fits: "));
+    EXPECT_THAT(found.output, HasSubstr("line: CartesianLinearMoveSkillType\n"));
+    const auto lacking = find({compositionFile("corner_by_parts.toml"), "--json"});
+    EXPECT_EQ(lacking.status, 1) << "nobody serves a LineToSkill";
+    const auto plan = nlohmann::json::parse(lacking.output);
+    EXPECT_EQ(plan.at("skill"), "CornerByPartsSkill");
+    EXPECT_EQ(plan.at("possible"), false);
+    ASSERT_EQ(plan.at("roles").size(), 2U);
+    EXPECT_EQ(plan.at("roles").at(0).at("role"), "ptp");
+    EXPECT_EQ(plan.at("roles").at(0).at("candidates").size(), 2U) << "of either arm";
+    EXPECT_TRUE(plan.at("roles").at(1).at("candidates").empty());
+    const auto strong = find({compositionFile("corner.toml"), "--payload", "5"});
+    EXPECT_EQ(strong.status, 0);
+    EXPECT_THAT(strong.output, HasSubstr("payload unknown")) << "of the other arm";
 }
 
 TEST(FindWithoutDiscovery, AsksTheServersThatAreNamed) {

@@ -29,8 +29,10 @@ protected:
     }
 
     ServerProcess arm_{"iiwa", {"--port", "0"}, tendingCell()};
-    ServerProcess camera_{std::vector<std::string>{METIER_EXAMPLE_CAMERA}};
-    ServerProcess door_{std::vector<std::string>{METIER_EXAMPLE_DOOR}};
+    ServerProcess camera_{
+        std::vector<std::string>{METIER_EXAMPLE_CAMERA, "--insecure-lab", "--port", "0"}};
+    ServerProcess door_{
+        std::vector<std::string>{METIER_EXAMPLE_DOOR, "--insecure-lab", "--port", "0"}};
 };
 
 TEST_F(MachineTending, UsesACameraADoorAndAnArmAsOneSkill) {
@@ -65,7 +67,7 @@ TEST_F(MachineTending, TheDoorIsSuspendedAndTakesNoOtherOrderUntilItIsDone) {
     open.awaitEvent(State::running);
     const auto refused = close->startWith({"other", {}});
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().message, HasSubstr("the door is on its way already"));
+    EXPECT_THAT(refused.error().message, HasSubstr("the door is in use by OpenDoorSkill"));
     ASSERT_TRUE(open->suspend());
     open.awaitEvent(State::suspended);
     EXPECT_FALSE(close->startWith({"again", {}}));

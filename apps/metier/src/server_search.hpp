@@ -11,9 +11,9 @@ namespace metier::app {
 
 /// The servers that a command speaks to: addresses, those of a cell file, or those that it finds.
 struct ServerChoice {
-    std::vector<std::string> urls;
-    std::string cell;
-    std::vector<std::string> discovery;
+    std::vector<std::string> urls{};
+    std::string cell{};
+    std::vector<std::string> discovery{};
 };
 
 /// Adds the arguments for addresses and a cell file to a command.

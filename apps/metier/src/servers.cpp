@@ -112,17 +112,24 @@ Exit reportOutcome(const opcua::Failure& failure) {
     return failure.delivery == opcua::Failure::Delivery::unknown ? Exit::unknown : Exit::failed;
 }
 
+void sortArguments(SkillChoice& choice) {
+    if (choice.skill.empty() && !choice.url.empty() && !isAddress(choice.url)) {
+        choice.skill = std::exchange(choice.url, {});
+    }
+}
+
 void addSkillChoice(CLI::App& command, SkillChoice& choice) {
     command.add_option("url", choice.url,
                        "Address of the server: opc.tcp://host:port; without it: the one that has "
                        "the skill");
-    command
-        .add_option("skill", choice.skill,
-                    "Name of the skill, or Controller/Name if several have it")
-        ->required()
-        ->check([](const std::string& text) {
-            return isAddress(text) ? "name a skill after the address" : "";
-        });
+    command.add_option("skill", choice.skill,
+                       "Name of the skill, or Controller/Name if several have it");
+    command.parse_complete_callback([&choice] {
+        sortArguments(choice);
+        if (choice.skill.empty()) {
+            throw CLI::RequiredError("skill");
+        }
+    });
     command.add_option("--cell", choice.servers.cell,
                        "Without an address: look among the servers of this cell file");
     addServerSearch(command, choice.servers);

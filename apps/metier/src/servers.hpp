@@ -40,7 +40,9 @@ struct SkillChoice {
     ServerChoice servers{};
 };
 
-/// Adds the arguments for it to a command.
+/// Takes a single argument that is no address for the skill's name.
+void sortArguments(SkillChoice& choice);
+/// Adds the arguments for it to a command. `choice` must outlive the command line.
 void addSkillChoice(CLI::App& command, SkillChoice& choice);
 
 /// A skill and the client that leads to it.

@@ -42,10 +42,10 @@ TEST(RobotArgument, AFileThatIsNotThereOrNoModelIsNamed) {
     EXPECT_EQ(loadAllRobots().value().size(), robotNames().size());
 }
 
-TEST(ServerChoices, NeedAServerOrACell) {
-    const auto nothing = addressesOf({});
+TEST(ServerChoices, NeedAServerOrACellIfNoneIsFound) {
+    const auto nothing = addressesOf({.discovery = {"opc.tcp://127.0.0.1:1"}});
     ASSERT_FALSE(nothing);
-    EXPECT_EQ(nothing.error().code, Errc::invalid_argument);
+    EXPECT_EQ(nothing.error().code, Errc::not_found);
     EXPECT_THAT(nothing.error().message, HasSubstr("--cell FILE"));
     EXPECT_THAT(addressesOf({{"opc.tcp://a:1", "opc.tcp://b:2"}, ""}).value(),
                 ElementsAre("opc.tcp://a:1", "opc.tcp://b:2"));

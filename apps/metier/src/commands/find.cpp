@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "command_context.hpp"
+#include "metier/composition/definition_file.hpp"
 #include "metier/opcua/search.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/server/candidate.hpp"
@@ -19,7 +21,8 @@ namespace metier::app {
 namespace {
 
 struct FindOptions {
-    std::string task;  // a type or a term
+    std::string task;         // a type, a term, or a composition file
+    composition::Use role{};  // that candidates are for, of a composition file
     server::ArmFigures wishes;
     std::vector<std::string> properties;
     std::vector<server::PropertyWish> property_wishes;
@@ -73,11 +76,27 @@ nlohmann::json orNull(const std::optional<double>& number) {
     return number ? nlohmann::json(*number) : nlohmann::json();
 }
 
+/// Adds to a verdict whether the skill is of the server and controller that a role asks for.
+void judgePlace(const composition::Use& role, const opcua::FoundServer& server,
+                const client::SkillAddress& skill, server::Verdict& verdict) {
+    const auto want = [&](const std::string& what, const std::string& wanted, bool fits) {
+        if (!wanted.empty()) {
+            verdict.fits = verdict.fits && fits;
+            verdict.reasons.push_back(fmt::format("{} {}{}", what, fits ? "" : "not ", wanted));
+        }
+    };
+    want("server", role.server, role.server == server.name || role.server == server.url);
+    want("controller", role.controller, role.controller == skill.controllerName());
+}
+
 /// Prints what was found; counts what fits.
 class Findings {
 public:
     Findings(const FindOptions& options, const std::vector<server::SurveyedServer>& servers)
         : options_(options), servers_(servers) {}
+
+    int fitting() const noexcept { return fitting_; }
+    const nlohmann::json& candidates() const noexcept { return candidates_; }
 
     void addServers() {
         for (std::size_t server = 0; server < servers_.size(); ++server) {
@@ -85,6 +104,14 @@ public:
                 addAnswer(server);
             } else {
                 addSilent(servers_[server].server, servers_[server].skills.error().message);
+            }
+        }
+    }
+    /// Candidates alone.
+    void addCandidates() {
+        for (std::size_t server = 0; server < servers_.size(); ++server) {
+            if (servers_[server].skills) {
+                static_cast<void>(addCandidatesOf(server));
             }
         }
     }
@@ -119,6 +146,13 @@ private:
     }
 
     void addAnswer(std::size_t server) {
+        if (!addCandidatesOf(server)) {
+            addOther(servers_[server].server, termsOf(*servers_[server].skills));
+        }
+    }
+
+    /// \return whether there is any
+    bool addCandidatesOf(std::size_t server) {
         const auto& skills = *servers_[server].skills;
         bool any = false;
         for (std::size_t skill = 0; skill < skills.size(); ++skill) {
@@ -128,9 +162,7 @@ private:
                 any = true;
             }
         }
-        if (!any) {
-            addOther(servers_[server].server, termsOf(skills));
-        }
+        return any;
     }
 
     void addOther(const opcua::FoundServer& server, const std::vector<std::string>& terms) {
@@ -150,6 +182,7 @@ private:
         verdict.fits = verdict.fits && of_properties.fits;
         verdict.reasons.insert(verdict.reasons.end(), of_properties.reasons.begin(),
                                of_properties.reasons.end());
+        judgePlace(options_.role, server, skill.address, verdict);
         const auto reasons = reasonsOf(skill, term, verdict);
         fitting_ += verdict.fits ? 1 : 0;
         say(server, fmt::format("{} {}: {}", nameOf(skill), verdict.fits ? "fits" : "does not fit",
@@ -179,13 +212,57 @@ private:
     nlohmann::json problems_ = nlohmann::json::array();
 };
 
+bool isFile(const std::string& task) {
+    return std::filesystem::path(task).extension() == ".toml";
+}
+
+/// The skills that could take the roles of a composition file.
+Result<Exit> findRoles(const FindOptions& options, const composition::Definition& definition,
+                       const std::vector<server::SurveyedServer>& servers) {
+    bool all = true;
+    auto roles = nlohmann::json::array();
+    for (const auto& use : definition.uses) {
+        auto asked = options;
+        asked.task = use.type;
+        asked.wishes = {use.reach ? use.reach : options.wishes.reach,
+                        use.payload ? use.payload : options.wishes.payload};
+        asked.role = use;
+        if (!options.json) {
+            fmt::print("{}: {}\n", use.alias, use.type);
+        }
+        Findings found(asked, servers);
+        found.addCandidates();
+        all = all && found.fitting() > 0;
+        if (!options.json && found.fitting() == 0) {
+            fmt::print("nothing fits\n");
+        }
+        roles.push_back(
+            {{"role", use.alias}, {"type", use.type}, {"candidates", found.candidates()}});
+    }
+    if (options.json) {
+        const nlohmann::json plan{{"skill", definition.name}, {"possible", all}, {"roles", roles}};
+        fmt::print("{}\n", plan.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    }
+    return all ? Exit::success : Exit::failed;
+}
+
 Result<Exit> runFind(FindOptions& options, const CommandIdentity& identity) {
     for (const auto& property : options.properties) {
         METIER_ASSIGN(auto wish, asUsage(server::parsePropertyWish(property)));
         options.property_wishes.push_back(std::move(wish));
     }
+    std::optional<composition::Definition> definition;
+    if (isFile(options.task)) {
+        METIER_ASSIGN(definition, asUsage(composition::loadDefinition(options.task)));
+    }
     const auto sighting = searchFor(options);
     const auto servers = server::survey(sighting.servers, identity);
+    if (definition) {
+        for (const auto& problem : sighting.problems) {
+            fmt::print(stderr, "metier: {}\n", printable(problem.message));
+        }
+        return findRoles(options, *definition, servers);
+    }
     Findings findings(options, servers);
     for (const auto& problem : sighting.problems) {
         findings.addProblem(problem);
@@ -204,7 +281,8 @@ void addFind(CLI::App& app, CommandContext& context) {
     command
         ->add_option("task", options->task,
                      "What the skill is for, by a dictionary entry, such as pick-and-place, or its "
-                     "type, such as JointPtpMoveSkillType or, for all moves, MoveSkillType")
+                     "type, such as JointPtpMoveSkillType or, for all moves, MoveSkillType; or a "
+                     "composition file, FILE.toml: what fits each skill that it uses")
         ->required();
     command->add_option("--reach", options->wishes.reach, "Least reach of the arm [m]")
         ->check(CLI::PositiveNumber);

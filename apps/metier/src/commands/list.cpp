@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "metier/client/lack.hpp"
 #include "metier/client/skill_finder.hpp"

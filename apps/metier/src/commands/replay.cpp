@@ -86,6 +86,9 @@ Result<Exit> runAgain(const ReplayOptions& options, const CommandIdentity& ident
         fmt::print(stderr, "metier: not started: {}\n", printable(checked->reason));
         return Exit::failed;
     }
+    for (const auto& note : checked->notes) {
+        fmt::print(stderr, "Check: {}\n", printable(note));
+    }
     fmt::print(stderr, "Check: possible, planned {:.3f} s\n", checked->planned_duration);
     showConnection(*open.client);
     return runSkill(signal, open, values, options.how);

@@ -203,13 +203,6 @@ Result<Exit> runWatch(const WatchOptions& options, const CommandIdentity& identi
     return printer.wait(signal, [&servers] { lookAgain(servers); });
 }
 
-/// A single argument is an address or a skill's name.
-void sortOut(SkillChoice& choice) {
-    if (choice.skill.empty() && !choice.url.empty() && !isAddress(choice.url)) {
-        choice.skill = std::exchange(choice.url, {});
-    }
-}
-
 }  // namespace
 
 void addWatch(CLI::App& app, CommandContext& context) {
@@ -228,7 +221,7 @@ void addWatch(CLI::App& app, CommandContext& context) {
         ->check(CLI::NonNegativeNumber);
     command->add_flag("--json", options->json, "Print one JSON object per line");
     command->callback([options, &context] {
-        sortOut(options->choice);
+        sortArguments(options->choice);
         context.exit = exitOf(runWatch(*options, context.identity));
     });
 }
