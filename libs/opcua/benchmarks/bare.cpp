@@ -224,8 +224,7 @@ void Client::call(const std::string& object, const std::string& method) {
 }
 
 void Client::subscribe(std::chrono::milliseconds publishing_interval,
-                       std::function<void()> on_event, const std::string& object) {
-    const auto of_other = object.empty() ? nullptr : std::make_unique<ParsedId>(object);
+                       std::function<void()> on_event) {
     impl_->on_event = std::move(on_event);
     auto request = UA_CreateSubscriptionRequest_default();
     request.requestedPublishingInterval = static_cast<double>(publishing_interval.count());
@@ -245,7 +244,7 @@ void Client::subscribe(std::chrono::milliseconds publishing_interval,
     filter.selectClauses = &operand;
     UA_MonitoredItemCreateRequest item;
     UA_MonitoredItemCreateRequest_init(&item);
-    item.itemToMonitor.nodeId = of_other ? of_other->id : own(kProgram);
+    item.itemToMonitor.nodeId = own(kProgram);
     item.itemToMonitor.attributeId = UA_ATTRIBUTEID_EVENTNOTIFIER;
     item.monitoringMode = UA_MONITORINGMODE_REPORTING;
     item.requestedParameters.queueSize = 100;

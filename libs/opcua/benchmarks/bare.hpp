@@ -52,9 +52,8 @@ public:
     void writeParameter(double value);
     /// Calls the Program's Start, which raises two events.
     void callStart();
-    /// Subscribes to the events of the Program, or of an object of another server, id as text.
-    void subscribe(std::chrono::milliseconds publishing_interval, std::function<void()> on_event,
-                   const std::string& object = {});
+    /// Subscribes to the Program's events.
+    void subscribe(std::chrono::milliseconds publishing_interval, std::function<void()> on_event);
     /// Serves the connection until something arrives or the time is over.
     void iterate(std::chrono::milliseconds timeout);
 

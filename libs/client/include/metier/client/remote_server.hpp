@@ -87,7 +87,7 @@ public:
     /// \param origin prefix of the execution ids of the used skill's user, up to a '~' or '/':
     ///               "pick.PickPlaceSkill"
     /// \return a used skill, for the executor's thread; must end before this
-    /// Errors: not_supported, if the skill lacks StartWith or GetExecution; those of the server.
+    /// Errors: those of the server; not_found, if the skill has no Start or no state.
     Result<std::unique_ptr<composition::UsedSkill>> use(const client::SkillAddress& skill,
                                                         std::string origin);
 
