@@ -48,8 +48,9 @@ Result<std::vector<ListedSkill>> listSkills(const CommandIdentity& identity,
 void print(const std::string& url, const std::vector<ListedSkill>& skills) {
     fmt::print("{}\n", url);
     for (const auto& skill : skills) {
-        fmt::print("  {:<18} {:<28} {:<10}{}\n", skill.controller, skill.name, skill.state,
-                   skill.lacks.empty() ? "" : " " + textOf(skill.lacks));
+        const auto lacks = textOf(skill.lacks);
+        fmt::print("  {:<18} {:<28} {}{}{}\n", skill.controller, skill.name, skill.state,
+                   lacks.empty() ? "" : "  ", lacks);
     }
     if (skills.empty()) {
         fmt::print("  no skills\n");
