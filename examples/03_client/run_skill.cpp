@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// What the command line says.
+/// Arguments of the command line.
 struct Order {
     std::string url;
     std::string skill;

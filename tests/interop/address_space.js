@@ -1,4 +1,4 @@
-// What a client of another maker finds in the address space of a server.
+// Views of a client of another maker on the address space of a server.
 'use strict';
 
 const assert = require('node:assert');

@@ -261,7 +261,7 @@ async function moveJaws(skill) {
   return ({ WidthReached }) => assert.ok(near(WidthReached, 0.05, 2e-3), `${WidthReached}`);
 }
 
-/** What a client writes for each skill; each answers how it judges the results. */
+/** Parameters that a client writes for each skill; each answers how it judges the results. */
 const kRecipes = {
   JointPtpMoveSkill: moveJoints,
   JointLinearMoveSkill: moveJoints,

@@ -241,7 +241,7 @@ test('a composition runs, halts and loses skills of another maker', async () => 
   }
 });
 
-/** What the component ran is in its records, since the other server keeps none. */
+/** Asserts that the component has recorded what it ran: the other server keeps no records. */
 async function assertRecorded(component) {
   await component.end();
   const { output, errors } = await runMetier(

@@ -1,4 +1,4 @@
-// What types make mandatory, in the instances that servers show.
+// Mandatory children of types, in the instances that servers show.
 #include <gmock/gmock.h>
 
 #include "metier/opcua/server.hpp"

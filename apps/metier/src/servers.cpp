@@ -10,7 +10,7 @@ namespace metier::app {
 
 namespace {
 
-/// What one server answers to the question for a skill.
+/// Answer of one server to the question for a skill.
 struct SkillAnswer {
     opcua::FoundServer server;
     Result<client::SkillAddress> skill;

@@ -125,7 +125,7 @@ private:
         return step.kind == StepKind::call && optional_.contains(step.use);
     }
 
-    /// What is left when optional steps are left out must still do something.
+    /// Checks that something is left to do when optional steps are left out.
     void checkOptional(const Step& step, const std::vector<Step>& steps) {
         const bool possible = step.kind != StepKind::fallback && step.wait_for == WaitFor::all &&
                               std::any_of(steps.begin(), steps.end(), [this](const Step& inner) {

@@ -26,7 +26,7 @@ struct PublishedArm {
     /// Place of each joint in `robotics` and in the server's arrays; empty: all in order.
     std::vector<JointPlace> places{};
 
-    /// What a motion of it cannot have.
+    /// Lists what a motion of it cannot have.
     std::vector<Lack> lacks() const;
 };
 

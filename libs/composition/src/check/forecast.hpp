@@ -10,7 +10,7 @@
 
 namespace metier::composition {
 
-/// What is known, before a run, of the moment between two of its steps.
+/// Knowledge, before a run, of the moment between two of its steps.
 struct Forecast {
     /// Arms that earlier steps have moved, by the address of their server; no values: not known.
     skill::ArmPositions arms{};
@@ -23,9 +23,9 @@ struct Forecast {
     bool isLost(std::string_view server) const;
     /// Whether the place of any arm is not known.
     bool anyLost() const;
-    /// A skill has moved these arms.
+    /// Notes that a skill has moved these arms.
     void move(const skill::ArmPositions& ends);
-    /// The arm of that server may have been moved to anywhere.
+    /// Notes that the arm of that server may be anywhere now.
     void lose(std::string_view server) { arms.insert_or_assign(std::string(server), kNowhere); }
 
 private:
@@ -34,9 +34,9 @@ private:
 
 /// Whether all arms stand at the same places, to rounding.
 bool samePlaces(const Forecast& a, const Forecast& b);
-/// After one of two ways, and it is not known which.
+/// Joins the forecasts after two ways, of which one is taken, and it is not known which.
 Forecast either(const Forecast& a, const Forecast& b);
-/// After two ways that begin together.
+/// Joins the forecasts after two ways that both begin at `begin`.
 Forecast both(const Forecast& begin, const Forecast& a, const Forecast& b);
 
 }  // namespace metier::composition

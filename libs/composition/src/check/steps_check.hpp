@@ -19,7 +19,7 @@ namespace metier::composition {
 /// Asks the used skills of a composition, in the order in which its steps would run them, whether
 /// they could be run; each from where the arms stand after the steps before. Nothing moves.
 ///
-/// What is not known before the run is a note, never a refusal.
+/// Values that are not known before the run make a note, never a refusal.
 /// Threading: the owner's thread; nothing waits.
 class StepsCheck {
 public:
@@ -51,7 +51,7 @@ private:
         std::string code;
         double fraction = 0.0;
     };
-    /// What is found of a step, or of several.
+    /// Outcome of the check of a step, or of several.
     struct Finding {
         Forecast after;
         std::optional<Refusal> refusal{};

@@ -41,7 +41,7 @@ public:
     }
 };
 
-/// What the command line of an OwnServer says.
+/// Arguments of the command line of an OwnServer.
 struct OwnCommandLine {
     cell::ServerConfig config;
     Security security;

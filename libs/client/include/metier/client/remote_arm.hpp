@@ -72,7 +72,7 @@ public:
     virtual const opcua_skill::KinematicsData& kinematics() const noexcept = 0;
     /// Whether the kinematics are the given ones.
     virtual bool usesGivenModel() const noexcept = 0;
-    /// What its motions cannot have, since its server is of another maker. Threads: any.
+    /// Lists what its motions cannot have, since its server is of another maker. Threads: any.
     virtual const std::vector<Lack>& lacks() const noexcept = 0;
 
     /// Sets the ApplicationUri of the server on whose behalf motions are made; the position stream

@@ -53,7 +53,7 @@ struct OfferOptions {
 /// --insecure-lab, --state FOLDER, --help. Without --insecure-lab the server is closed from its
 /// first start: encryption, certificates, users and roles (docs/guide/security.md).
 ///
-/// What goes wrong is reported on standard error; run() then returns the exit status.
+/// Errors are reported on standard error; run() then returns the exit status.
 ///
 /// Threading: one thread, that of main(), makes and runs it; make it before any other thread, since
 /// it blocks SIGINT, SIGTERM and SIGHUP in this one. Skills are called on the server's thread, and

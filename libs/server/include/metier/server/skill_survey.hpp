@@ -47,7 +47,7 @@ struct SurveyedSkill {
     std::vector<client::SkillUse> uses{};
     /// Figures of the arm that it moves itself.
     ArmFigures arm{};
-    /// What a run of it cannot have, since its server is of another maker.
+    /// Things that a run of it cannot have, since its server is of another maker.
     std::vector<client::Lack> lacks{};
 };
 
