@@ -9,6 +9,7 @@ const {
   nodesets, standardUnits,
 } = require('node-opcua');
 const { freePort } = require('./free_port');
+const { announce, run } = require('./server_program');
 
 // As the server lists them, and as its arrays have them: not in the order of the arm.
 const kStart = { wrist_3: 0, elbow: 1.75, base: 0, wrist_1: -2.02, shoulder: -1.3, wrist_2: -1.57 };
@@ -193,11 +194,7 @@ async function main() {
   const type = addTypes(space);
   const skill = new StreamSkill(space, addRobot(space, arm), type, arm);
   await server.start();
-  process.once('SIGTERM', () => server.shutdown(() => process.exit(0)));
-  process.stdout.write(`ready opc.tcp://127.0.0.1:${port}\n`);
+  announce(server, port);
 }
 
-main().catch((error) => {
-  process.stderr.write(`${error.stack}\n`);
-  process.exit(1);
-});
+run(main);

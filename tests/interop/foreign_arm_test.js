@@ -20,6 +20,8 @@ const kHierarchicalReferences = 'ns=0;i=33';
 const kDeadlineMs = 30000;
 // A killed server is noticed at once, one that is silent after 2 s; the machine may be busy.
 const kNoticedMs = 2500;
+// A machine that is busy may begin a command only after the move.
+const kMostRounds = 5;
 
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'foreign_arm_'));
 let arm;
@@ -44,15 +46,18 @@ ${lines.join('\n')}
 
 const startComponent = (lines) => startServer(['serve', cellOf(lines), '--server', 'move', '--port', '0']);
 
-beforeEach(async () => {
+async function startBoth() {
   arm = await startProcess(process.execPath, [kProgram]);
   component = await startComponent([`model = "${kModel}"`]);
-});
+}
 
-afterEach(async () => {
+async function stopBoth() {
   await component.stop();
   await arm.stop();
-});
+}
+
+beforeEach(startBoth);
+afterEach(stopBoth);
 
 const move = (joints, ...more) =>
   runMetier(['run', component.url, 'JointPtpMoveSkill', '--set', `TargetJointPosition=${joints}`, ...more]);
@@ -131,6 +136,31 @@ function placeOnTheWay(joints) {
 const awaitOnTheWay = (reader) =>
   until('the arm moves', reader.joints, (joints) => placeOnTheWay(joints).share > 0.1);
 
+/**
+ * Calls `stop` while the arm moves; on a fresh arm again if the move was over before.
+ * @param {() => Promise<void>} stop
+ * @returns what the move ended with
+ */
+async function stopOnTheWay(stop) {
+  for (let round = 1; ; ++round) {
+    const moving = move(kAway);
+    const stopped = withArm(async (reader) => {
+      await awaitOnTheWay(reader);
+      await stop();
+    });
+    const [ended] = await Promise.all([moving, stopped]);
+    if (ended.status !== 0 || round === kMostRounds) {
+      return ended;
+    }
+    await stopBoth();
+    await startBoth();
+  }
+}
+
+async function halt(url) {
+  assert.strictEqual((await runMetier(['halt', url])).status, 0);
+}
+
 test('says at its start what cannot be had, as list does', async () => {
   assert.match(component.log(), /LabArm has no atomic start .*no dead-man .*no measured state/);
   assert.match((await runMetier(['list', arm.url])).output,
@@ -155,11 +185,8 @@ test('moves the arm along the square', async () => {
 });
 
 test('a Halt in the middle stops on the path, braked by set-points', async () => {
+  assert.notStrictEqual((await stopOnTheWay(() => halt(component.url))).status, 0);
   await withArm(async (reader) => {
-    const moving = move(kAway);
-    await awaitOnTheWay(reader);
-    assert.strictEqual((await runMetier(['halt', component.url])).status, 0);
-    assert.notStrictEqual((await moving).status, 0);
     const { share, off } = placeOnTheWay(await reader.joints());
     assert.ok(share < 0.9, `it stopped at ${share} of the way`);
     assert.ok(off < 2e-3, `it stopped ${off} rad beside the way`);
@@ -171,14 +198,9 @@ test('a Halt in the middle stops on the path, braked by set-points', async () =>
 });
 
 test('a Halt of the stream halts the move, which goes again after its Reset', async () => {
-  await withArm(async (reader) => {
-    const moving = move(kAway);
-    await awaitOnTheWay(reader);
-    assert.strictEqual((await runMetier(['halt', arm.url])).status, 0);
-    const { status, errors } = await moving;
-    assert.notStrictEqual(status, 0);
-    assert.match(errors, /LabArm: the position stream ended \(Halted\): Halt was called/);
-  });
+  const halted = await stopOnTheWay(() => halt(arm.url));
+  assert.notStrictEqual(halted.status, 0);
+  assert.match(halted.errors, /LabArm: the position stream ended \(Halted\): Halt was called/);
   assert.strictEqual((await runMetier(['reset', component.url, 'JointPtpMoveSkill'])).status, 0);
   const { status, errors } = await move(kHome);
   assert.strictEqual(status, 0, errors);

@@ -7,6 +7,7 @@ const {
   DataType, OPCUAServer, StatusCodes, coerceNodeId, coerceQualifiedName,
 } = require('node-opcua');
 const { freePort } = require('./free_port');
+const { announce, run } = require('./server_program');
 
 const kStates = {
   Halted: { id: 2406, number: 11 },
@@ -193,11 +194,7 @@ async function main() {
   const skills = namespace.addObject({ browseName: 'Skills', componentOf: lamp });
   kShapes.forEach((shape) => new ForeignProgram(space, skills, shape));
   await server.start();
-  process.once('SIGTERM', () => server.shutdown(() => process.exit(0)));
-  process.stdout.write(`ready opc.tcp://127.0.0.1:${port}\n`);
+  announce(server, port);
 }
 
-main().catch((error) => {
-  process.stderr.write(`${error.stack}\n`);
-  process.exit(1);
-});
+run(main);

@@ -11,6 +11,7 @@
 const path = require('node:path');
 const { MessageSecurityMode, OPCUACertificateManager, OPCUADiscoveryServer, SecurityPolicy } = require('node-opcua');
 const { freePort } = require('./free_port');
+const { announce, run } = require('./server_program');
 
 async function main() {
   const [directory, given = '0'] = process.argv.slice(2);
@@ -24,11 +25,7 @@ async function main() {
     securityModes: [MessageSecurityMode.None],
   });
   await lds.start();
-  process.once('SIGTERM', () => lds.shutdown(() => process.exit(0)));
-  process.stdout.write(`ready opc.tcp://127.0.0.1:${port}\n`);
+  announce(lds, port);
 }
 
-main().catch((error) => {
-  process.stderr.write(`${error.stack}\n`);
-  process.exit(1);
-});
+run(main);
