@@ -18,7 +18,7 @@ struct KeptValue {
     Owned<UA_DataValue> value{UA_TYPES[UA_TYPES_DATAVALUE]};
 };
 
-/// Rights of a client to a Variable.
+/// Place where the value of a Variable is kept.
 enum class Storage {
     /// Another part of the server answers for it, or clients cannot write it.
     elsewhere,
