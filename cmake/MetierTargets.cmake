@@ -94,22 +94,23 @@ function(metier_add_library name)
     add_library(metier::${name} ALIAS ${target})
 endfunction()
 
-# metier_add_test(<name> SOURCES ... LIBRARIES ... [LABELS ...] [TIMEOUT seconds] [ALONE])
+# metier_add_test(<name> SOURCES ... LIBRARIES ... [SEPARATE files] [LABELS ...] [TIMEOUT seconds] [ALONE])
 # A GoogleTest program; each of its tests is a ctest of its own, and sees the headers of the library's src/.
+# SEPARATE: sources with helpers of the same name as another's, which a unity build (preset ci and those
+# of the sanitizers) compiles on their own.
 # ALONE: no other test runs beside one of them.
 function(metier_add_test name)
     if(NOT METIER_TESTS)
         return()
     endif()
-    cmake_parse_arguments(arg "ALONE" "TIMEOUT" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+    cmake_parse_arguments(arg "ALONE" "TIMEOUT" "SOURCES;LIBRARIES;SEPARATE;LABELS" ${ARGN})
     if(NOT arg_TIMEOUT)
         set(arg_TIMEOUT 60)
     endif()
     add_executable(${name} ${arg_SOURCES})
+    set_source_files_properties(${arg_SEPARATE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gmock_main metier::warnings)
     target_include_directories(${name} PRIVATE src)
-    # Fixtures of two files may have one name.
-    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
     metier_use_precompiled_headers(${name} REUSE_FROM metier_test_headers)
     # That of ::testing::TempDir(): two builds may be tested side by side.
     set(folder ${CMAKE_CURRENT_BINARY_DIR}/${name}.tmp/)

@@ -7,7 +7,7 @@ namespace metier::opcua_skill::testing {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{30};
+constexpr std::chrono::seconds kLongestAnswer{30};
 
 class HandDrivenWork final : public skill::ExecutionWork {
 public:
@@ -62,7 +62,7 @@ skill::ValueMap Hand::snapshot() const {
 bool Hand::await(const std::string& what) {
     std::unique_lock lock(mutex_);
     const auto find = [&] { return std::find(reported_.begin(), reported_.end(), what); };
-    if (!changed_.wait_for(lock, kPatience, [&] { return find() != reported_.end(); })) {
+    if (!changed_.wait_for(lock, kLongestAnswer, [&] { return find() != reported_.end(); })) {
         return false;
     }
     reported_.erase(find());
