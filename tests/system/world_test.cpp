@@ -2,6 +2,7 @@
 // seen, a wall pushes back.
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,16 @@ protected:
     double height() const { return cube().at("pose").at(2).get<double>(); }
     opcua::Answer<skill::ValueMap> grasp() {
         return openSkill(*gripper_, "GraspGripperSkill").run({{"Force", 40.0}}, inAMinute());
+    }
+    /// Jaws that lost their part close, and meanwhile refuse a grasp.
+    opcua::Answer<skill::ValueMap> graspAfterALoss() {
+        const auto deadline = inAMinute();
+        auto answer = grasp();
+        while (!answer && answer.error().message.find("jaws still move") != std::string::npos &&
+               std::chrono::steady_clock::now() < deadline) {
+            answer = grasp();
+        }
+        return answer;
     }
 
     RunningCell cell_{deviceCell("world")};
@@ -64,9 +75,9 @@ TEST_F(CellWithAWorld, SeesAPartThatIsLost) {
     cell_.inject("world", "place", kBetweenTheJaws);
     ASSERT_TRUE(grasp());
     cell_.inject("world", "drop", "wsg");
-    const auto again = grasp();
+    const auto again = graspAfterALoss();
     ASSERT_FALSE(again) << "the jaws hold nothing any more";
-    EXPECT_THAT(again.error().message, HasSubstr("part"));
+    EXPECT_THAT(again.error().message, HasSubstr("no part"));
 }
 
 TEST_F(CellWithAWorld, GoesOnWithAMoveThatLosesItsPartAndTheGripperSaysSoAtTheNextGrasp) {
@@ -87,9 +98,9 @@ TEST_F(CellWithAWorld, GoesOnWithAMoveThatLosesItsPartAndTheGripperSaysSoAtTheNe
     const auto end = move_.awaitEnd(inAMinute()).value();
     EXPECT_EQ(end.to, skill::State::ready) << "an arm does not feel what the jaws hold";
     EXPECT_NEAR(height(), 0.015, 1e-6) << "it lies on the table";
-    const auto again = grasp();
+    const auto again = graspAfterALoss();
     ASSERT_FALSE(again);
-    EXPECT_THAT(again.error().message, HasSubstr("part"));
+    EXPECT_THAT(again.error().message, HasSubstr("no part"));
 }
 
 /// Moves 0.1 m away from the base into a wall that stands some centimetres away; 20 N are reached
