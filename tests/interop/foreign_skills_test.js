@@ -107,6 +107,99 @@ test('the page shows every skill, and says what it cannot halt', async () => {
   }
 });
 
+/** A browser's tab: the stream of what the page shows, and commands in its name. */
+class Tab {
+  constructor(url) {
+    this.url = url;
+    this.ending = new AbortController();
+  }
+
+  async open() {
+    const stream = await fetch(`${this.url}/api/stream`, { signal: this.ending.signal });
+    this.events = this.read(stream.body.getReader());
+    const { value } = await this.events.next();
+    this.id = value.data.tab;
+    return this;
+  }
+
+  async* read(reader) {
+    const decoder = new TextDecoder();
+    let text = '';
+    for (;;) {
+      const { value } = await reader.read();
+      text += decoder.decode(value, { stream: true });
+      for (let end = text.indexOf('\n\n'); end >= 0; end = text.indexOf('\n\n')) {
+        const [name, data] = text.slice(0, end).split('\n');
+        text = text.slice(end + 2);
+        yield { name: name.slice('event: '.length), data: JSON.parse(data.slice('data: '.length)) };
+      }
+    }
+  }
+
+  async command(what, body) {
+    const answer = await fetch(`${this.url}/api/${what}`, {
+      method: 'POST',
+      headers: { 'Content-Type': 'application/json', 'X-Metier': '1' },
+      body: JSON.stringify({ tab: this.id, ...body }) });
+    return { status: answer.status, ...await answer.json() };
+  }
+
+  /** Waits until a skill is shown in a state. */
+  async shows(key, state) {
+    let event;
+    do {
+      event = (await this.events.next()).value;
+    } while (event.name !== 'skill' || event.data.key !== key || event.data.state !== state);
+  }
+
+  close() {
+    this.ending.abort();
+  }
+}
+
+test('the page starts them for the tab that has control, and halts what that leaves running', async () => {
+  const lamps = await startProcess(process.execPath, [kProgram]);
+  const page = await startServer(['dashboard', '--port', '0', lamps.url]);
+  const tabs = [];
+  try {
+    const { key: server, skills } = await awaitCell(page.url);
+    assert.match(skills[0].lacks, /no atomic start .*, no dead-man/);
+    const keyOf = (name) => skills.find((skill) => skill.name === name).key;
+    const mine = await new Tab(page.url).open();
+    const other = await new Tab(page.url).open();
+    tabs.push(mine, other);
+    const refused = await mine.command('skills/start', { key: keyOf('Whole') });
+    assert.match(refused.error.message, /take control/);
+    assert.deepStrictEqual((await mine.command('control', { action: 'take' })).taken, [server]);
+    assert.match((await other.command('control', { action: 'take', server })).error.message, /has control/);
+
+    for (const name of kSkills) {
+      const started = await mine.command('skills/start', { key: keyOf(name), parameters: { Duration: 1 } });
+      assert.strictEqual(started.status, 200, JSON.stringify(started));
+      await mine.shows(keyOf(name), 'Running');
+      await mine.shows(keyOf(name), 'Ready');
+    }
+    const whole = { key: keyOf('Whole') };
+    await mine.command('skills/start', { ...whole, parameters: { Duration: 60 } });
+    assert.strictEqual((await mine.command('skills/suspend', whole)).status, 200);
+    await mine.shows(whole.key, 'Suspended');
+    assert.strictEqual((await mine.command('skills/resume', whole)).status, 200);
+    await mine.shows(whole.key, 'Running');
+    await mine.command('skills/start', { key: keyOf('WithoutEvents'), parameters: { Duration: 60 } });
+    const started_here = runMetier(['run', lamps.url, 'NamesOnly', '--set', 'Duration=3']);
+    await awaitState(lamps.url, 'NamesOnly', 'Running');
+    mine.close();
+    await other.shows(whole.key, 'Halted');
+    await awaitState(lamps.url, 'WithoutEvents', 'Halted');
+    assert.strictEqual((await started_here).status, 0, 'what another client has started goes on');
+    await until(async () => (await other.command('control', { action: 'take' })).taken);
+  } finally {
+    tabs.forEach((tab) => tab.close());
+    await page.stop();
+    await lamps.stop();
+  }
+});
+
 for (const skill of ['Whole', 'PlainEvents', 'WithoutEvents', 'NamesOnly']) {
   test(`a failure of ${skill} ends run, and reset makes it Ready`, async () => {
     const failed = await run(skill, '--set', 'Duration=0.1', '--set', 'Fails=true');
@@ -268,11 +361,13 @@ test('the server that dies ends run as unknown', async () => {
 });
 
 async function awaitState(url, skill, state) {
+  await until(async () => new RegExp(`${skill} +${state}`).test((await runMetier(['list', url])).output));
+}
+
+/** Asks until the answer is yes. */
+async function until(asked) {
   const deadline = Date.now() + 30000;
-  while (Date.now() < deadline) {
-    if (new RegExp(`${skill} +${state}`).test((await runMetier(['list', url])).output)) {
-      return;
-    }
+  while (!(await asked())) {
+    assert.ok(Date.now() < deadline, `for too long it was not so: ${asked}`);
   }
-  throw new Error(`${skill} is not ${state}`);
 }

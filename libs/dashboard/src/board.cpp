@@ -132,6 +132,13 @@ void Board::setOffer(const std::string& key, ServerShown offer) {
         send(makeMessage("cell", json::object()));
     }
     send(makeMessage("server", {{"key", key}, {"connected", true}, {"error", nullptr}}));
+    for (auto& [name, control] : controls_) {
+        // The server itself shows who has its leases.
+        if (control.server == key && !control.held_as.empty() && control.owner.empty()) {
+            control.owner = control.held_as;
+            sendControl(name, control);
+        }
+    }
 }
 
 void Board::setDisconnected(const std::string& key, const std::string& error) {

@@ -41,6 +41,8 @@ struct ControlState {
     double lease_ms = 0.0;  ///< left when it was read; 0: no lease
     double until = 0.0;     ///< when it ends without a heartbeat, s since 1970 UTC; 0: no lease
     std::string held_by{};  ///< tab of this dashboard that holds it; empty: none
+    /// Name of that tab, if only this page knows that it has control; else empty.
+    std::string held_as{};
 
     bool operator==(const ControlState&) const = default;
 };

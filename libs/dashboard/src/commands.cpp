@@ -208,11 +208,8 @@ Reply Commands::start(const json& body, const std::shared_ptr<Person>& person) {
     skill::StartRequest request;
     METIER_ASSIGN(request.parameters, parametersIn(body, named.skill->description()));
     METIER_ASSIGN(request.execution_id, textOrNone(body, "execution"));
-    if (const auto& control = named.reached.skill->control; !control.empty()) {
-        METIER_ASSIGN(request.epoch, named.tab->epochOf(control));
-    }
-    const auto id = awaitAnswer<std::string>(
-        [&](auto done) { return named.skill->startWith(request, std::move(done)); });
+    METIER_ASSIGN(request.epoch, named.tab->epochOf(named.reached.skill->control));
+    const auto id = named.tab->session().start(*named.reached.skill, request);
     return id ? Reply{200, {{"execution", opcua::sanitise(*id)}}}
               : errorReply(explained(id.error(), *named.skill, "Start"));
 }
@@ -280,7 +277,9 @@ Commands::Halted Commands::haltServer(const std::string& server,
         halted.error = session.error().message;
         return halted;
     }
-    auto& client = *session == nullptr ? link->client() : (*session)->client();
+    auto& own = *session == nullptr ? link->client() : (*session)->client();
+    // A lock of the device keeps all sessions out but the one that started.
+    const auto tab = tabs_.sessionOf(*person, server);
     std::vector<std::pair<std::string, std::future<opcua::Answer<opcua::CallResult>>>> asked;
     for (const auto& key : keys) {
         const auto* skill = link->find(key);
@@ -294,6 +293,7 @@ Commands::Halted Commands::haltServer(const std::string& server,
         // With the callback, which may come after this has given up.
         auto promise = std::make_shared<std::promise<opcua::Answer<opcua::CallResult>>>();
         asked.emplace_back(key, promise->get_future());
+        auto& client = tab && skill->skill->locksDevice() ? tab->session().client() : own;
         auto sent = client.callAsync({skill->address.node, skill->halt, {}},
                                      [promise](auto told) { promise->set_value(std::move(told)); });
         if (!sent) {

@@ -33,14 +33,22 @@ bool isDenial(const opcua::Failure& failure) {
            failure.status == opcua::status::kBadIdentityTokenInvalid;
 }
 
-/// Whether a session may take control of a controller.
-bool mayCommand(opcua::Client& client, const ServerLink& link) {
-    const auto metier = client.namespaceIndex(opcua_skill::kMetierUri);
-    if (!metier || link.controllers().empty()) {
-        return false;
+/// The Method that who may command may call: AcquireControl, or Start where there are no leases.
+opcua::Answer<opcua::NodeId> commandingMethod(opcua::Client& client, const ServerLink& link) {
+    if (link.controllers().empty()) {
+        return opcua::failed(opcua::status::kBadNoMatch, "no skill");
     }
-    const auto method =
-        client.translate(link.controllers().front().node, {{*metier, "AcquireControl"}});
+    const auto& controller = link.controllers().front();
+    if (!controller.leases) {
+        return client.translate(link.skills().front().address.node, {{0, "Start"}});
+    }
+    METIER_ASSIGN(const auto metier, client.namespaceIndex(opcua_skill::kMetierUri));
+    return client.translate(controller.node, {{metier, "AcquireControl"}});
+}
+
+/// Whether a session may command a server's skills.
+bool mayCommand(opcua::Client& client, const ServerLink& link) {
+    const auto method = commandingMethod(client, link);
     const auto executable =
         method ? client.readUserExecutable(*method) : opcua::Answer<bool>(false);
     return executable && *executable;

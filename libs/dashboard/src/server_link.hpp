@@ -31,16 +31,18 @@ struct LinkContext {
 struct LinkedSkill {
     std::string key;
     client::SkillAddress address;
-    std::string control;  ///< key of its controller's control; empty: it has none
+    std::string control;  ///< key of its controller's control
     opcua::NodeId halt;   ///< its Method; null: it has none
     std::unique_ptr<client::AsyncSkill> skill;
 };
 
-/// A controller of a server, of whose skills a tab may take control.
+/// A controller of a server, of whose skills a tab may take control. Skills outside of any
+/// controller have one without a name and a node.
 struct LinkedController {
     std::string key;
     std::string name;
     opcua::NodeId node;
+    bool leases;  ///< whether the server gives control of it; else only this page knows who has it
 };
 
 /// A connection to one server, with all that the server publishes, and the subscriptions that keep

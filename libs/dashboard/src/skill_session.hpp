@@ -7,12 +7,37 @@
 #include <mutex>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "metier/client/async_skill.hpp"
 #include "metier/opcua/client.hpp"
 #include "server_link.hpp"
 
 namespace metier::dashboard {
+
+/// Whether a skill whose server names no executions runs as it was started here.
+///
+/// Transitions may be reported late, so an end counts only if as many Running were reported before
+/// as there were starts. An end that is not reported leaves it running until the skill is looked
+/// at. Threading: any.
+class StartedRun {
+public:
+    /// Begins a start; false if another one is under way, or what was started may still run.
+    /// \param at_rest whether the skill was seen at rest just now
+    bool begin(bool at_rest);
+    /// Ends it. \param started whether it may have begun to run
+    void answered(bool started);
+    void note(skill::State now);
+    bool isOver() const;
+
+private:
+    mutable std::mutex mutex_;
+    unsigned starts_ = 0;
+    unsigned running_ = 0;  // transitions to Running, as many as starts at most
+    bool starting_ = false;
+    bool over_ = true;
+    bool was_over_ = true;  // before the present start
+};
 
 /// A session with one server, and the skills that were used by it.
 ///
@@ -28,11 +53,29 @@ public:
     /// The skill, as this session uses it. Errors: the server's.
     opcua::Answer<std::shared_ptr<client::AsyncSkill>> skill(const LinkedSkill& linked);
 
+    /// Starts it. If it can be locked only as a device, the lock stays with this session.
+    /// \return id of the execution
+    /// Errors: those of AsyncSkill::startWith(); invalid_state, while what was started here runs.
+    opcua::Answer<std::string> start(const LinkedSkill& linked, const skill::StartRequest& request);
+    /// Halts each skill that was started here, still runs, and whose server would let it go on
+    /// without this session. \return what was not halted, for a person
+    std::vector<std::string> haltStarted();
+
 private:
+    /// A skill as this session uses it.
+    struct Used {
+        // Shared with the threads that wait for an answer at this moment.
+        std::shared_ptr<client::AsyncSkill> skill;
+        // Shared with the callback of its transitions.
+        std::shared_ptr<StartedRun> run;
+    };
+    opcua::Answer<Used> use(const LinkedSkill& linked);
+
     const std::unique_ptr<opcua::Client> client_;  // first: the skills use it
+    // Shared by the skills.
+    const std::shared_ptr<client::DeviceLocks> locks_ = client::makeDeviceLocks(*client_);
     std::mutex mutex_;
-    // Shared with the threads that wait for an answer at this moment.
-    std::map<std::string, std::shared_ptr<client::AsyncSkill>> skills_;
+    std::map<std::string, Used> skills_;
 };
 
 /// Sends a request of an AsyncSkill and waits for what it is answered, at the latest at the
@@ -48,7 +91,9 @@ opcua::Answer<T> awaitAnswer(Send send) {
         return tl::unexpected(sent.error());
     }
     if (answer.wait_for(kLongest) != std::future_status::ready) {
-        return opcua::failed(opcua::status::kBadTimeout, "waiting for an answer");
+        auto late = opcua::failed(opcua::status::kBadTimeout, "waiting for an answer");
+        late.value().delivery = opcua::Failure::Delivery::unknown;
+        return late;
     }
     return answer.get();
 }

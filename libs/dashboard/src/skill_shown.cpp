@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "metier/client/lack.hpp"
 #include "metier/skill/json.hpp"
 
 namespace metier::dashboard {
@@ -114,7 +115,8 @@ json skillJson(const std::string& key, const std::string& server, const client::
             {"can",
              {{"check", skill.knowsExecutions()},
               {"suspend", description.suspendable},
-              {"start_with", skill.knowsExecutions()}}}};
+              {"start_with", skill.knowsExecutions()}}},
+            {"lacks", client::explanationOf(skill.lacks())}};
 }
 
 double strokeIn(const json& skills) {

@@ -90,7 +90,8 @@ Answer<> Survey::add(const SkillAddress& address) {
     if (!halt && halt.error().status != opcua::status::kBadNoMatch) {
         return tl::unexpected(std::move(halt.error()));
     }
-    LinkedSkill linked{uniqueKey(address), address, addController(address),
+    METIER_ASSIGN(auto control, addController(address));
+    LinkedSkill linked{uniqueKey(address), address, std::move(control),
                        halt.value_or(opcua::NodeId()), nullptr};
     METIER_ASSIGN(auto skill, AsyncSkill::open(link_.client(), address,
                                                {transitionsTo(context_.board, linked.key)}));
@@ -101,23 +102,40 @@ Answer<> Survey::add(const SkillAddress& address) {
     return {};
 }
 
-std::string Survey::addController(const SkillAddress& address) {
+Answer<std::string> Survey::addController(const SkillAddress& address) {
     const auto* controller = address.controller();
-    if (controller == nullptr) {
-        return {};
-    }
-    auto key = fmt::format("{}/{}", context_.server.name, controller->name);
+    const auto node = controller == nullptr ? NodeId() : controller->node;
+    const auto name = address.controllerName();
+    auto key = fmt::format("{}/{}", context_.server.name, name);
     auto& known = link_.controllers_;
-    const bool is_known = std::any_of(
-        known.begin(), known.end(), [&](const auto& one) { return one.node == controller->node; });
+    const bool is_known =
+        std::any_of(known.begin(), known.end(), [&](const auto& one) { return one.node == node; });
     if (!is_known) {
-        known.push_back({key, controller->name, controller->node});
+        METIER_ASSIGN(const bool has_leases, leases(node));
+        known.push_back({key, name, node, has_leases});
         context_.board.changeControl(key, [&](ControlState& state) {
             state.server = context_.server.name;
-            state.controller = controller->name;
+            state.controller = name;
         });
     }
     return key;
+}
+
+Answer<bool> Survey::leases(const NodeId& controller) {
+    auto& client = link_.client();
+    if (controller.isNull()) {
+        return false;
+    }
+    const auto metier = client.namespaceIndex(opcua_skill::kMetierUri);
+    if (!metier) {
+        return metier.error().code == Errc::not_found ? Answer<bool>(false)
+                                                      : tl::unexpected(metier.error());
+    }
+    const auto method = client.translate(controller, {{*metier, "AcquireControl"}});
+    if (!method && method.error().status != opcua::status::kBadNoMatch) {
+        return tl::unexpected(method.error());
+    }
+    return method.has_value();
 }
 
 Answer<MovedArm> Survey::armOf(const SkillAddress& address, const std::string& used) {

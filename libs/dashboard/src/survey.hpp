@@ -21,7 +21,9 @@ public:
 private:
     opcua::Answer<> add(const client::SkillAddress& address);
     std::string uniqueKey(const client::SkillAddress& address) const;
-    std::string addController(const client::SkillAddress& address);
+    /// Key of the control over a skill.
+    opcua::Answer<std::string> addController(const client::SkillAddress& address);
+    opcua::Answer<bool> leases(const opcua::NodeId& controller);
     /// \param used server that the skill uses; empty: none
     opcua::Answer<MovedArm> armOf(const client::SkillAddress& address, const std::string& used);
     opcua::Answer<MovedArm> addArm(const client::KinematicsNodes& nodes, const std::string& used);

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "board.hpp"
@@ -13,23 +14,45 @@
 
 namespace metier::dashboard {
 
+/// Controls that only this page knows of, since their servers give no leases: they keep its other
+/// tabs away, and no other client.
+///
+/// Threading: any.
+class ControlsOfPage {
+public:
+    /// `board` must outlive this.
+    explicit ControlsOfPage(Board& board) : board_(board) {}
+
+    /// Nothing to do if the tab has it. Errors: locked, with the holder's name.
+    Result<void> take(const LinkedController& controller, const std::string& tab,
+                      const std::string& name);
+    bool holds(const std::string& control) const;
+    /// Gives all back. \return their keys
+    std::set<std::string> release();
+
+private:
+    Board& board_;
+    mutable std::mutex mutex_;
+    std::set<std::string> keys_;
+};
+
 /// Means by which a tab commands: a session of its own with a server, and control of controllers.
 ///
 /// Threading: any.
 class TabSession {
 public:
-    TabSession(Board& board, std::unique_ptr<opcua::Client> client)
-        : board_(board), session_(std::move(client)) {}
-    /// Gives back what it holds and ends the session.
+    TabSession(Board& board, std::string server, std::unique_ptr<opcua::Client> client);
+    /// Halts what would go on without it, gives back what it holds, and ends the session.
     ~TabSession();
     TabSession(const TabSession&) = delete;
     TabSession& operator=(const TabSession&) = delete;
 
-    /// Takes control of a controller for a tab. Errors: locked, with the holder's name.
+    /// Takes control of a controller for a tab; without leases, from the other tabs of this page
+    /// only. Errors: locked, with the holder's name.
     Result<void> take(const LinkedController& controller, const std::string& tab,
                       const std::string& name);
-    /// Epoch of the lease, for a start.
-    /// Errors: locked, if it holds no lease, or does not hold it any more.
+    /// Epoch of the lease, for a start; 0 where there are no leases.
+    /// Errors: locked, if it holds no control, or does not hold it any more.
     Result<std::uint64_t> epochOf(const std::string& control) const;
     /// Whether nothing of what it took was lost.
     bool holdsAll() const;
@@ -37,6 +60,9 @@ public:
 
 private:
     Board& board_;
+    const std::string server_;
+    // Shared with the callback for the loss of the connection.
+    const std::shared_ptr<ControlsOfPage> of_page_ = std::make_shared<ControlsOfPage>(board_);
     SkillSession session_;  // before what uses it
     mutable std::mutex mutex_;
     std::map<std::string, client::ControlHandle> controls_;
@@ -67,8 +93,16 @@ public:
     Result<std::shared_ptr<TabSession>> session(const std::string& tab, const Person& person,
                                                 const std::string& server) const;
 
+    /// Session of a tab of that person that has control of a server; null if there is none.
+    std::shared_ptr<TabSession> sessionOf(const Person& person, const std::string& server) const;
+
 private:
     struct Tab {
+        Tab() = default;
+        ~Tab();
+        Tab(Tab&&) = default;
+        Tab& operator=(Tab&&) = default;
+
         std::shared_ptr<Person> person;  // shared with their log-in
         // Shared with the commands that use them at this moment.
         std::map<std::string, std::shared_ptr<TabSession>> sessions{};

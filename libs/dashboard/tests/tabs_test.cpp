@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
 #include <string>
 
 #include "cell_bench.hpp"
@@ -152,6 +153,101 @@ TEST_F(TabsOfACell, HearThatTheirControlIsLost) {
     EXPECT_EQ(refused.status, 409);
     EXPECT_EQ(takeAs(shown_.id(), "arm").status, 200) << "it may take it anew";
     EXPECT_NE(tabs_.session(shown_.id(), *anybody(), "arm").value(), held);
+}
+
+class PageWithoutLeases : public ::testing::Test {
+protected:
+    PageWithoutLeases() {
+        board_.addServer("lamp", "lamp", "opc.tcp://127.0.0.1:1");
+        board_.changeControl(lamp_.key, [](ControlState& state) { state.server = "lamp"; });
+    }
+
+    ManualClock clock_;
+    Board board_{{{"name", "test"}}, clock_};
+    ShownTab one_{board_, "one"};
+    ShownTab two_{board_, "two"};
+    const LinkedController lamp_{"lamp/", "", {}, false};
+    ControlsOfPage ones_{board_};
+    ControlsOfPage twos_{board_};
+};
+
+TEST_F(PageWithoutLeases, GivesControlToOneTab) {
+    ASSERT_TRUE(ones_.take(lamp_, "one", "tab one"));
+    EXPECT_TRUE(ones_.holds("lamp/"));
+    EXPECT_EQ(one_.await("control", kMine).at("owner"), "tab one");
+    EXPECT_TRUE(ones_.take(lamp_, "one", "tab one")) << "it has it";
+    const auto refused = twos_.take(lamp_, "two", "tab two");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::locked);
+    EXPECT_EQ(refused.error().message, "lamp/: \"tab one\" has control");
+    EXPECT_FALSE(twos_.holds("lamp/"));
+    EXPECT_FALSE(twos_.take(lamp_, "one", "tab one")) << "another session of the same tab";
+    EXPECT_EQ(two_.await("control", [](const json&) { return true; }).at("mine"), false);
+}
+
+TEST_F(PageWithoutLeases, GivesBackOnlyWhatATabHas) {
+    ASSERT_TRUE(ones_.take(lamp_, "one", "tab one"));
+    EXPECT_EQ(twos_.release().size(), 0U);
+    EXPECT_FALSE(twos_.take(lamp_, "two", "tab two")) << "not released by who did not have it";
+    EXPECT_EQ(ones_.release(), std::set<std::string>{"lamp/"});
+    EXPECT_FALSE(ones_.holds("lamp/"));
+    one_.await("control", kFree);
+    EXPECT_TRUE(twos_.take(lamp_, "two", "tab two"));
+}
+
+TEST_F(PageWithoutLeases, ShowsItAgainAfterItsServerWasAway) {
+    board_.setOffer("lamp", {});
+    ASSERT_TRUE(ones_.take(lamp_, "one", "tab one"));
+    one_.await("control", kMine);
+    board_.setDisconnected("lamp", "gone");
+    one_.await("control", kFree);
+    EXPECT_FALSE(twos_.take(lamp_, "two", "tab two")) << "tab one still has its session";
+    board_.setOffer("lamp", {});
+    EXPECT_EQ(one_.await("control", kMine).at("owner"), "tab one");
+}
+
+TEST(StartedRunTest, EndsWithItsEnd) {
+    StartedRun run;
+    EXPECT_TRUE(run.isOver());
+    ASSERT_TRUE(run.begin(false));
+    EXPECT_FALSE(run.isOver());
+    run.answered(true);
+    run.note(skill::State::running);
+    run.note(skill::State::suspended);
+    run.note(skill::State::running);
+    EXPECT_FALSE(run.isOver());
+    run.note(skill::State::ready);
+    EXPECT_TRUE(run.isOver());
+}
+
+TEST(StartedRunTest, IsNotEndedByTheLateReportsOfTheOneBefore) {
+    StartedRun run;
+    run.begin(false);
+    run.answered(true);
+    ASSERT_FALSE(run.begin(false)) << "it may run";
+    ASSERT_TRUE(run.begin(true)) << "it was seen at rest, and its transitions are on their way";
+    run.answered(true);
+    run.note(skill::State::running);
+    run.note(skill::State::halted);
+    EXPECT_FALSE(run.isOver());
+    run.note(skill::State::running);
+    run.note(skill::State::ready);
+    EXPECT_TRUE(run.isOver());
+}
+
+TEST(StartedRunTest, StaysAsItWasIfAStartIsRefused) {
+    StartedRun run;
+    ASSERT_TRUE(run.begin(false));
+    EXPECT_FALSE(run.begin(true)) << "a start is under way";
+    run.answered(false);
+    EXPECT_TRUE(run.isOver());
+    run.note(skill::State::running);
+    EXPECT_TRUE(run.isOver()) << "another client's";
+    run.begin(false);
+    run.answered(true);
+    run.begin(true);
+    run.answered(false);
+    EXPECT_FALSE(run.isOver()) << "its end was not reported";
 }
 
 }  // namespace

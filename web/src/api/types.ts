@@ -40,6 +40,8 @@ export interface Skill {
     parameters: Field[];
     results: Field[];
     can: { check?: boolean; suspend?: boolean; start_with?: boolean };
+    /** What a run cannot have, since the server is of another maker; "" if nothing. */
+    lacks?: string;
 }
 
 export interface Joint {

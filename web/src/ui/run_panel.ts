@@ -106,7 +106,8 @@ export class RunPanel {
         const server = state.cell?.servers.find((candidate) => candidate.key === skill.server);
         fill(this.element,
             h('div', { class: 'run-head' }, h('h2', {}, words(skill.display_name || skill.name)), this.pill.element,
-                h('small', {}, `${server?.name ?? skill.server} \u00b7 ${skill.controller}`), this.status, this.bar, this.error),
+                h('small', {}, `${server?.name ?? skill.server} \u00b7 ${skill.controller}`), this.status, this.bar, this.error,
+                ...(skill.lacks ? [h('p', { class: 'lacks' }, `Of another maker: ${skill.lacks}`)] : [])),
             h('div', { class: 'run-body' }, this.form.element, this.verdict),
             h('div', { class: 'run-foot' }, this.why_not, h('div', { class: 'commands' }, ...Object.values(this.buttons))));
     }
