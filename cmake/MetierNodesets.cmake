@@ -58,11 +58,13 @@ function(metier_compile_nodeset name)
 
     add_custom_command(
         OUTPUT ${out}/namespace_${name}_generated.c ${out}/namespace_${name}_generated.h
-        COMMAND ${Python3_EXECUTABLE} ${open62541_TOOLS_DIR}/nodeset_compiler/nodeset_compiler.py
-                ${existing} --xml=${arg_FILE} ${arrays} ${out}/namespace_${name}_generated
-                > ${out}/namespace_${name}.log
-        DEPENDS ${files} ${open62541_TOOLS_DIR}/nodeset_compiler/nodeset_compiler.py
-        COMMENT "Compiling the NodeSet ${name} (log: ${out}/namespace_${name}.log)" VERBATIM)
+        COMMAND ${Python3_EXECUTABLE} ${METIER_NODESET_TOOLS}/compile_nodeset.py
+                --cache ${PROJECT_SOURCE_DIR}/build/nodesets --out ${out}/namespace_${name}_generated
+                --compiler ${open62541_TOOLS_DIR}/nodeset_compiler --inputs ${files}
+                -- ${existing} --xml=${arg_FILE} ${arrays}
+        DEPENDS ${files} ${METIER_NODESET_TOOLS}/compile_nodeset.py
+                ${open62541_TOOLS_DIR}/nodeset_compiler/nodeset_compiler.py
+        COMMENT "Compiling the NodeSet ${name} (log: ${out}/namespace_${name}_generated.log)" VERBATIM)
     set(METIER_NODESET_SOURCES ${METIER_NODESET_SOURCES} ${sources} PARENT_SCOPE)
 endfunction()
 
