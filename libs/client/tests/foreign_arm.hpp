@@ -96,8 +96,31 @@ public:
         changed_.notify_all();
     }
     void pressEmergencyStop(bool pressed) { emergency_stop_ = pressed; }
+    /// Waits until the emergency stop was read so often while it was pressed; false after 30 s.
+    bool awaitStopReads(int wanted) {
+        std::unique_lock lock(mutex_);
+        return changed_.wait_for(lock, std::chrono::seconds(30),
+                                 [&] { return stop_reads_ >= wanted; });
+    }
     void loseEncoders(bool lost) { encoders_lost_ = lost; }
+    /// The emergency stop has no value any more.
+    void loseStop(bool lost) { stop_lost_ = lost; }
     void refuseSetPoints() { refuses_ = true; }
+    /// It is halted by itself in the moment of the next Halt.
+    void haltsItselfNext() { halts_itself_ = true; }
+    /// Answers no write while it is held, at most 20 s.
+    void hold(bool held) {
+        {
+            const std::lock_guard lock(mutex_);
+            held_ = held;
+        }
+        changed_.notify_all();
+    }
+    /// Somebody else moves that axis [rad].
+    void push(const std::string& axis, double distance) {
+        const std::lock_guard lock(mutex_);
+        position_.at(indexOf(axis)) += distance;
+    }
 
 private:
     using NodeId = opcua::NodeId;
@@ -147,7 +170,22 @@ private:
         const auto set = served_.object(state, "ParameterSet");
         const auto stop = served_.variable(set, "EmergencyStop", Value::of(false));
         served_.variable(set, "ProtectiveStop", Value::of(false));
-        source(stop, [this] { return valueOf(Value::of(emergency_stop_.load())); });
+        source(stop, [this] { return stopNow(); });
+    }
+
+    opcua::DataValue stopNow() {
+        opcua::DataValue data;
+        if (stop_lost_) {
+            data.status = opcua::status::kBadTimeout;
+            return data;
+        }
+        data.value = Value::of(emergency_stop_.load());
+        if (emergency_stop_) {
+            const std::lock_guard lock(mutex_);
+            ++stop_reads_;
+        }
+        changed_.notify_all();
+        return data;
     }
 
     void addSkill(const NodeId& skills) {
@@ -197,7 +235,8 @@ private:
             return fail(Errc::out_of_range, "too far");
         }
         {
-            const std::lock_guard lock(mutex_);
+            std::unique_lock lock(mutex_);
+            changed_.wait_for(lock, std::chrono::seconds(20), [this] { return !held_; });
             times_ += with_time ? 1 : 0;
             takeSetPoint(value);
             set_points_ += state_ == State::running ? 1 : 0;
@@ -219,6 +258,10 @@ private:
             {
                 const std::lock_guard lock(mutex_);
                 calls_.push_back(name);
+                if (name == "Halt" && std::exchange(halts_itself_, false)) {
+                    state_ = State::halted;
+                    return fail(Errc::invalid_state, "not now");
+                }
                 if (state_ != from) {
                     return fail(Errc::invalid_state, "not now");
                 }
@@ -241,9 +284,13 @@ private:
     std::vector<double> poses_;
     std::vector<std::string> calls_;
     int set_points_ = 0;
+    int stop_reads_ = 0;
+    bool halts_itself_ = false;
+    bool held_ = false;
     std::atomic<int> times_ = 0;
     std::atomic<bool> emergency_stop_ = false;
     std::atomic<bool> encoders_lost_ = false;
+    std::atomic<bool> stop_lost_ = false;
     std::atomic<bool> refuses_ = false;
     ServedNodes served_{{"device", "robotics"}};  // last: its thread uses all of the above
 };

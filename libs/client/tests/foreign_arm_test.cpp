@@ -2,8 +2,11 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <filesystem>
 #include <memory>
+#include <mutex>
+#include <vector>
 
 #include "foreign_arm.hpp"
 #include "metier/client/remote_arm.hpp"
@@ -52,6 +55,45 @@ Error refusal(const RemoteArmOptions& options) {
     EXPECT_FALSE(arm) << "it connects";
     return arm ? Error{} : arm.error();
 }
+
+/// Stays where the arm is, and notes when it is asked for set-points; stops the arm's thread once.
+class StayingSource final : public device::SetPointSource {
+public:
+    explicit StayingSource(std::chrono::milliseconds pause = 0ms) : pause_(pause) {}
+
+    Next next(const device::ArmState& /*state*/,
+              device::JointArray& /*set_point*/) noexcept override {
+        constexpr std::size_t kPauseAt = 20;
+        auto now = std::chrono::steady_clock::now();
+        const auto until = now + (times_.size() == kPauseAt ? pause_ : 0ms);
+        while (now < until) {  // a thread that gets no processor
+            now = std::chrono::steady_clock::now();
+        }
+        {
+            const std::lock_guard lock(mutex_);
+            times_.push_back(now);
+        }
+        asked_.notify_all();
+        return Next::set_point;
+    }
+    void ended(EndCause /*cause*/, const device::Safety& /*safety*/) override {}
+
+    /// Whether it was asked so often before that time.
+    bool awaitCalls(std::size_t count, SteadyTime until) {
+        std::unique_lock lock(mutex_);
+        return asked_.wait_until(lock, until, [&] { return times_.size() >= count; });
+    }
+    std::vector<SteadyTime> times() {
+        const std::lock_guard lock(mutex_);
+        return times_;
+    }
+
+private:
+    const std::chrono::milliseconds pause_;
+    std::mutex mutex_;
+    std::condition_variable asked_;
+    std::vector<SteadyTime> times_;
+};
 
 TEST(ForeignArm, MovesWithItsAxesInAnotherOrderAndInDegrees) {
     ForeignArm foreign;
@@ -136,6 +178,95 @@ TEST(ForeignArm, IsHaltedAtAnEmergencyStop) {
     EXPECT_TRUE(awaitSafety(*arm, SafetyState::normal));
 }
 
+TEST(ForeignArm, IsHaltedAtAStopThatIsReleasedAtOnce) {
+    ForeignArm foreign;
+    const auto arm = connect(foreign);
+    const auto move = std::make_shared<SmoothMove>(0.5, 100'000);
+    ASSERT_TRUE(arm->attach(move));
+    ASSERT_TRUE(foreign.awaitSetPoints(5));
+    foreign.pressEmergencyStop(true);
+    ASSERT_TRUE(foreign.awaitStopReads(2));
+    foreign.pressEmergencyStop(false);
+    ASSERT_TRUE(foreign.await(State::halted));
+    EXPECT_EQ(move->awaitEnd(), EndCause::safety);
+}
+
+TEST(ForeignArm, IsHaltedWhenItsStopIsNotKnownAnyMore) {
+    ForeignArm foreign;
+    const auto arm = connect(foreign);
+    const auto move = std::make_shared<SmoothMove>(0.5, 100'000);
+    ASSERT_TRUE(arm->attach(move));
+    ASSERT_TRUE(foreign.awaitSetPoints(5));
+    foreign.loseStop(true);
+    ASSERT_EQ(move->awaitEnd(), EndCause::disconnected);
+    EXPECT_TRUE(foreign.await(State::halted));
+    EXPECT_FALSE(arm->attach(std::make_shared<SmoothMove>(0.1, 30)));
+    foreign.loseStop(false);
+    EXPECT_TRUE(awaitSafety(*arm, SafetyState::normal));
+}
+
+TEST(ForeignArm, LacksASafetyStateIfItsStopHasNoValue) {
+    ForeignArm foreign;
+    foreign.loseStop(true);
+    const auto arm = connect(foreign);
+    EXPECT_THAT(arm->lacks(), ElementsAre(Lack::atomic_start, Lack::dead_man, Lack::measured_state,
+                                          Lack::safety_state));
+    foreign.loseStop(false);
+    foreign.pressEmergencyStop(true);
+    EXPECT_TRUE(awaitSafety(*arm, SafetyState::emergency_stop));
+}
+
+TEST(ForeignArm, GetsNoSetPointsTogetherAfterAPause) {
+    ForeignArm foreign;
+    const auto arm = connect(foreign);
+    const auto source = std::make_shared<StayingSource>(200ms);
+    ASSERT_TRUE(arm->attach(source));
+    ASSERT_TRUE(source->awaitCalls(32, testing::soon()));
+    const auto times = source->times();
+    EXPECT_GT(times[31] - times[21], 9 * arm->info().cycle) << "it went on from where it stood";
+    arm->stop();
+    EXPECT_TRUE(foreign.await(State::halted));
+}
+
+TEST(ForeignArm, GetsFewSetPointsThatWaitOnTheWay) {
+    ForeignArm foreign;
+    const auto arm = connect(foreign);
+    const auto source = std::make_shared<StayingSource>();
+    ASSERT_TRUE(arm->attach(source));
+    ASSERT_TRUE(foreign.awaitSetPoints(5));
+    foreign.hold(true);
+    const auto before = source->times().size();
+    EXPECT_FALSE(source->awaitCalls(before + 30, std::chrono::steady_clock::now() + 500ms))
+        << "they would reach the arm together";
+    foreign.hold(false);
+    EXPECT_TRUE(source->awaitCalls(before + 40, testing::soon())) << "it goes on";
+    arm->stop();
+    EXPECT_TRUE(foreign.await(State::halted));
+}
+
+TEST(ForeignArm, DoesNotStandWhileOthersMoveIt) {
+    ForeignArm foreign;
+    const auto arm = connect(foreign);
+    const auto move = std::make_shared<SmoothMove>(0.1, 30);
+    ASSERT_TRUE(arm->attach(move));
+    ASSERT_EQ(move->awaitEnd(), EndCause::done) << move->text();
+    // A thread that gets no processor for 300 ms takes the arm for standing: one round has to do.
+    int stood = 1;
+    for (int round = 0; stood != 0 && round < 5; ++round) {
+        stood = 0;
+        for (int i = 0; i < 6; ++i) {
+            foreign.push("base", 0.01);
+            const auto there = foreign.position("base") - 1e-9;
+            ASSERT_TRUE(testing::awaitState(*arm, [&](const device::ArmState& state) {
+                stood += i > 0 && state.standstill ? 1 : 0;
+                return state.position[0] >= there;
+            }));
+        }
+    }
+    EXPECT_EQ(stood, 0);
+    EXPECT_TRUE(testing::awaitState(*arm, [](const auto& state) { return state.standstill; }));
+}
+
 TEST(ForeignArm, IsHaltedWhenItsPositionIsLost) {
     ForeignArm foreign;
     const auto arm = connect(foreign);
@@ -182,6 +313,44 @@ TEST(ForeignArm, IsHaltedByStopAndWhenItsComponentEnds) {
     ASSERT_TRUE(foreign.await(State::running)) << "it resets what it has halted itself";
     arm.reset();
     EXPECT_TRUE(foreign.await(State::halted));
+}
+
+TEST(ForeignArm, TellsOfAStreamThatWasHaltedAtItsVeryEnd) {
+    ForeignArm foreign;
+    const auto arm = connect(foreign);
+    foreign.haltsItselfNext();
+    const auto move = std::make_shared<SmoothMove>(0.1, 30);
+    ASSERT_TRUE(arm->attach(move));
+    EXPECT_EQ(move->awaitEnd(), EndCause::safety);
+    EXPECT_THAT(foreign.calls(), ElementsAre("Start", "Halt")) << "nobody has asked for a Reset";
+    ASSERT_TRUE(resetUntilDone(*arm));
+    EXPECT_TRUE(foreign.await(State::ready));
+}
+
+TEST(ForeignArm, IsNotResetAfterAStopThatCameTogetherWithItsOwn) {
+    ForeignArm foreign;
+    const auto arm = connect(foreign);
+    const auto move = std::make_shared<SmoothMove>(0.5, 100'000);
+    ASSERT_TRUE(arm->attach(move));
+    ASSERT_TRUE(foreign.awaitSetPoints(5));
+    foreign.haltsItselfNext();
+    arm->stop();
+    EXPECT_EQ(move->awaitEnd(), EndCause::stopped);
+    EXPECT_TRUE(awaitSafety(*arm, SafetyState::fault));
+    EXPECT_FALSE(arm->attach(std::make_shared<SmoothMove>(0.1, 30)));
+}
+
+TEST(ForeignArm, IsHaltedByResetIfItWasLeftRunning) {
+    ForeignArm foreign({.state = State::running});  // of a component that was killed
+    const auto arm = connect(foreign);
+    const auto refused = std::make_shared<SmoothMove>(0.1, 30);
+    ASSERT_TRUE(arm->attach(refused));
+    EXPECT_EQ(refused->awaitEnd(), EndCause::safety);
+    EXPECT_THAT(refused->text(), HasSubstr("Reset halts it"));
+    ASSERT_TRUE(resetUntilDone(*arm));
+    const auto move = std::make_shared<SmoothMove>(0.1, 30);
+    ASSERT_TRUE(arm->attach(move));
+    EXPECT_EQ(move->awaitEnd(), EndCause::done) << move->text();
 }
 
 TEST(ForeignArm, IsResetFirstIfItIsHalted) {

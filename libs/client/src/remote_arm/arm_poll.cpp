@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <utility>
 
@@ -36,6 +37,8 @@ struct ArmPoll::Layout {
     std::size_t emergency_stops = 0;
     std::size_t protective_stops = 0;
     bool program = false;
+    /// Which stops have had a value; used by one thread at a time.
+    std::vector<bool> known_stops = std::vector<bool>(emergency_stops + protective_stops);
 
     /// Measured joint positions [rad]; nothing if one of them is not there now.
     std::optional<device::JointArray> positionIn(const std::vector<DataValue>& values) const {
@@ -51,15 +54,23 @@ struct ArmPoll::Layout {
         return position;
     }
 
-    SafetyState stopIn(const std::vector<DataValue>& values) const {
-        const auto first = axes.size();
-        for (auto i = first; i < first + emergency_stops + protective_stops; ++i) {
-            if (values[i].value.as<bool>().value_or(false)) {
-                return i < first + emergency_stops ? SafetyState::emergency_stop
-                                                   : SafetyState::protective_stop;
+    /// The first stop that is pressed; disconnected if one has no value any more.
+    SafetyState stopIn(const std::vector<DataValue>& values) {
+        auto state = SafetyState::normal;
+        for (std::size_t stop = 0; stop < known_stops.size(); ++stop) {
+            const auto& value = values[axes.size() + stop];
+            const auto pressed = value.status.isBad() ? Result<bool>(fail(Errc::device_fault, ""))
+                                                      : value.value.as<bool>();
+            if (pressed.value_or(false)) {
+                return stop < emergency_stops ? SafetyState::emergency_stop
+                                              : SafetyState::protective_stop;
             }
+            if (!pressed && known_stops[stop]) {
+                state = SafetyState::disconnected;
+            }
+            known_stops[stop] = known_stops[stop] || pressed;
         }
-        return SafetyState::normal;
+        return state;
     }
 
     std::optional<skill::State> skillIn(const std::vector<DataValue>& values) const {
@@ -73,7 +84,7 @@ struct ArmPoll::Layout {
         return now ? std::optional(now->state) : std::nullopt;
     }
 
-    void noteArm(const std::vector<DataValue>& values, Notes& notes) const {
+    void noteArm(const std::vector<DataValue>& values, Notes& notes) {
         if (axes.empty()) {
             return;
         }
@@ -107,9 +118,9 @@ ArmPoll::ArmPoll(opcua::Client& client, const PublishedArm& arm,
         const auto of_program = programItems(*program);
         items_.insert(items_.end(), of_program.begin(), of_program.end());
     }
-    layout_ = std::make_shared<const Layout>(
-        Layout{robotics.axes, arm.places, robotics.emergency_stops.size(),
-               robotics.protective_stops.size(), program.has_value()});
+    layout_ =
+        std::make_shared<Layout>(Layout{robotics.axes, arm.places, robotics.emergency_stops.size(),
+                                        robotics.protective_stops.size(), program.has_value()});
 }
 
 void ArmPoll::ask(std::chrono::nanoseconds period) {
@@ -136,6 +147,11 @@ void ArmPoll::ask(std::chrono::nanoseconds period) {
     if (!asked) {
         notes_->noteBroken(asked.error().message);
     }
+}
+
+bool ArmPoll::hasUnknownStops() const {
+    const auto& known = layout_->known_stops;
+    return std::find(known.begin(), known.end(), false) != known.end();
 }
 
 Result<void> ArmPoll::askAndWait() {

@@ -29,13 +29,16 @@ public:
     void ask(std::chrono::nanoseconds period);
     /// Asks and waits for the answer. Errors: those of the server; type_mismatch.
     Result<void> askAndWait();
+    /// Whether a stop has no value that says whether it is pressed. After askAndWait(), before
+    /// ask().
+    bool hasUnknownStops() const;
 
 private:
     struct Layout;
     struct Pending;
     std::vector<opcua::ReadItem> items_;
     opcua::Client& client_;
-    std::shared_ptr<const Layout> layout_;  // shared with answers that are under way, as both below
+    std::shared_ptr<Layout> layout_;  // shared with answers that are under way, as both below
     std::shared_ptr<Pending> pending_;
     std::shared_ptr<Notes> notes_;
 };

@@ -40,7 +40,22 @@ void Notes::noteBroken(const std::string& why) {
     });
 }
 
-void Notes::noteAnswer(const opcua::Answer<>& answer) {
+std::uint64_t Notes::noteWrite() {
+    const std::lock_guard lock(mutex_);
+    unanswered_.emplace(++writes_, std::chrono::steady_clock::now());
+    return writes_;
+}
+
+SteadyTime Notes::oldestUnanswered() const {
+    const std::lock_guard lock(mutex_);
+    return unanswered_.empty() ? SteadyTime::max() : unanswered_.begin()->second;
+}
+
+void Notes::noteAnswer(std::uint64_t number, const opcua::Answer<>& answer) {
+    {
+        const std::lock_guard lock(mutex_);
+        unanswered_.erase(number);
+    }
     // A stream that ended meanwhile refuses; its transition has the reason.
     if (answer || answer.error().status == opcua::status::kBadInvalidState) {
         return;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -55,7 +56,13 @@ public:
     }
     void notePosition(const device::JointArray& position);
     void noteBroken(const std::string& why);
-    void noteAnswer(const opcua::Answer<>& answer);
+    /// A set-point is about to be written. \return its number
+    std::uint64_t noteWrite();
+    /// \param number as noteWrite() gave it
+    void noteAnswer(std::uint64_t number, const opcua::Answer<>& answer);
+    /// When the oldest set-point that is not answered yet was written; the latest time if there is
+    /// none.
+    SteadyTime oldestUnanswered() const;
     void noteSafety(device::SafetyState safety);
     /// Notes the state of the skill that a command to it has brought about.
     void noteCommanded(skill::State state);
@@ -69,6 +76,8 @@ private:
     mutable std::mutex mutex_;
     Observed observed_;
     std::uint64_t commands_ = 0;
+    std::uint64_t writes_ = 0;
+    std::map<std::uint64_t, SteadyTime> unanswered_;
     const std::shared_ptr<WakeUp> wake_up_;  // of the owner, who may be gone
 };
 

@@ -20,6 +20,8 @@ constexpr auto kPublishingInterval = 10ms;
 constexpr auto kSafetyInterval = 20ms;
 // Longest time until a stream of another maker that was halted stands.
 constexpr auto kLongestHalt = 3s;
+// Age of a set-point without an answer from which on no further one is sent to another maker's arm.
+constexpr auto kLongestUnanswered = 100ms;
 
 /// A stream skill, or one of a type below: the published type is abstract.
 Result<bool> isStream(opcua::Client& client, const client::SkillAddress& skill) {
@@ -116,6 +118,9 @@ std::vector<Lack> StreamSession::lacks() const {
     auto lacks = foreign_ ? std::vector{Lack::atomic_start, Lack::dead_man} : std::vector<Lack>();
     const auto of_arm = arm_.lacks();
     lacks.insert(lacks.end(), of_arm.begin(), of_arm.end());
+    if (poll_->hasUnknownStops()) {
+        lacks.push_back(Lack::safety_state);
+    }
     return lacks;
 }
 
@@ -224,8 +229,11 @@ Result<void> StreamSession::startStream(const skill::ParentExecution& parent,
     });
     if (!parent.id.empty() && stream_.takesParents()) {
         METIER_TRY(stream_.startWith({.parent = parent}));
-    } else {
-        METIER_TRY(stream_.start());
+    } else if (const auto started = stream_.start(); !started) {
+        if (foreign_ && started.error().delivery == opcua::Failure::Delivery::unknown) {
+            static_cast<void>(haltStream());  // it may run, and nobody else would end it
+        }
+        return fail(started.error());
     }
     if (foreign_) {
         notes_->noteCommanded(skill::State::running);
@@ -262,27 +270,38 @@ Result<StreamSession::Ending> StreamSession::endStream() {
         write(kEndOfStream, true, std::chrono::system_clock::now());
         return Ending::awaited;
     }
-    METIER_TRY(haltStream());
+    METIER_ASSIGN(const bool halted, haltStream());
+    if (!halted) {
+        return Ending::awaited;  // its state says how it ended
+    }
     METIER_TRY(stream_.awaitRest(std::chrono::steady_clock::now() + kLongestHalt));
     METIER_TRY(resetHalted());
     return Ending::reached;
 }
 
-Result<void> StreamSession::haltStream() {
+bool StreamSession::isBehind() const {
+    return notes_->oldestUnanswered() < std::chrono::steady_clock::now() - kLongestUnanswered;
+}
+
+Result<bool> StreamSession::haltStream() {
     const auto halted = stream_.halt();
     // A stream that has ended meanwhile cannot be halted.
     if (!halted && !(foreign_ && halted.error().status == opcua::status::kBadInvalidState)) {
         return fail(halted.error());
     }
-    return {};
+    return halted.has_value();
 }
 
 Result<void> StreamSession::resetStream(bool stopped) {
     METIER_ASSIGN(auto state, stream_.state());
     // A skill that is Ready while its arm is stopped resets the arm by way of Halted; one of
     // another maker that is Suspended would go on to an old set-point.
-    if (foreign_ ? state == skill::State::suspended : state == skill::State::ready && stopped) {
+    const bool goes_on = state == skill::State::suspended || state == skill::State::running;
+    if (foreign_ ? goes_on : state == skill::State::ready && stopped) {
         METIER_TRY(stream_.halt());
+        if (foreign_) {
+            METIER_TRY(stream_.awaitRest(std::chrono::steady_clock::now() + kLongestHalt));
+        }
         state = skill::State::halted;
     }
     if (state == skill::State::halted || stopped) {
@@ -308,9 +327,11 @@ Result<void> StreamSession::resetHalted() {
 
 void StreamSession::write(std::string_view parameter, const skill::Value& value,
                           std::optional<UtcTime> meant_for) {
-    const auto sent = stream_.setAsync(
-        parameter, value, meant_for,
-        [notes = notes_](const opcua::Answer<>& answer) { notes->noteAnswer(answer); });
+    const auto number = notes_->noteWrite();
+    const auto sent = stream_.setAsync(parameter, value, meant_for,
+                                       [notes = notes_, number](const opcua::Answer<>& answer) {
+                                           notes->noteAnswer(number, answer);
+                                       });
     if (!sent) {
         notes_->noteBroken(sent.error().message);
     }

@@ -51,9 +51,14 @@ public:
     Result<Ending> endStream();
     /// Whether the stream is of another maker: it does not end by silence.
     bool isForeign() const noexcept { return foreign_; }
+    /// Whether the server has not answered set-points for so long that more would reach the arm in
+    /// one leap.
+    bool isBehind() const;
     /// Halts the stream. Waits for the answer, not for standstill.
-    Result<void> haltStream();
-    /// Resets the stream skill, by way of Halted if it is not there.
+    /// \return false if it had ended by itself
+    Result<bool> haltStream();
+    /// Resets the stream skill, by way of Halted if it is not there; one of another maker is halted
+    /// also while it runs, since nobody else would end what a component that was killed has left.
     /// \param stopped whether the arm is stopped
     Result<void> resetStream(bool stopped);
     /// Resets a stream skill that was halted. Waits for the answer.

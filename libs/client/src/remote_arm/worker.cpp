@@ -14,10 +14,10 @@ using device::EndCause;
 using device::Safety;
 using device::SafetyState;
 
-constexpr auto kIdlePause = 100ms;
-constexpr auto kBusyPause = 10ms;
 // Period of reading what the server of an arm that stands does not publish by itself.
 constexpr auto kIdlePollPeriod = 50ms;
+constexpr auto kIdlePause = kIdlePollPeriod;
+constexpr auto kBusyPause = 10ms;
 // Longest time until the server's safety state follows its Reset.
 constexpr auto kResetWait = 2s;
 // Longest wait for the reason of a robot that has stopped; it stands meanwhile.
@@ -34,8 +34,10 @@ constexpr auto kStandstillAtTarget = 60ms;
 constexpr auto kStandstill = 300ms;
 // Largest distance from its last set-point at which an arm counts as there [rad].
 constexpr double kAtTarget = 1e-3;
-// After a longer pause of this thread it does not catch up set-point by set-point.
+// After a longer pause of this thread it does not catch up set-point by set-point. An arm of
+// another maker goes to the newest one at once: what came late together would be one leap.
 constexpr std::uint64_t kMostCyclesBehind = 50;
+constexpr std::uint64_t kMostCyclesBehindForeign = 1;
 // Distance of the measured arm from the last set-point over which it was moved by someone else
 // [rad].
 constexpr double kMoved = 2e-3;
@@ -167,6 +169,12 @@ void RemoteArmWorker::run(const std::stop_token& stop) {
     if (stream_ == Stream::running) {
         leaveStream();  // nobody else would end a stream of another maker
     }
+    {
+        const std::lock_guard lock(mutex_);
+        if (pending_ != nullptr) {  // attached meanwhile: it gets its end, too
+            source_ = std::exchange(pending_, nullptr);
+        }
+    }
     letGo(EndCause::disconnected);
 }
 
@@ -222,6 +230,8 @@ void RemoteArmWorker::observe() {
 void RemoteArmWorker::observeStream(const Observed& seen) {
     leaves_running_ = seen.skill.value_or(skill::State::running) != skill::State::running;
     if (stream_ == Stream::none) {
+        // Another client runs it: what halts it then is not this.
+        halted_by_stop_ = halted_by_stop_ && seen.skill != skill::State::running;
         return;
     }
     if (const auto end = endOf(seen)) {
@@ -237,9 +247,14 @@ std::optional<skill::TransitionEvent> RemoteArmWorker::endOf(const Observed& see
     if (seen.stream_end || !leaves_running_) {
         return seen.stream_end;
     }
+    const auto now = std::chrono::steady_clock::now();
     if (seen.skill != skill::State::ready && seen.words.empty() && !halted_by_stop_ &&
-        std::chrono::steady_clock::now() - seen.skill_since < kLongestEvent) {
+        now - seen.skill_since < kLongestEvent) {
         return std::nullopt;
+    }
+    if (seen.skill == skill::State::ready && stream_ == Stream::running &&
+        now - stream_start_ < kLongestEvent) {
+        return std::nullopt;  // its server may show Running a moment after it has answered Start
     }
     skill::TransitionEvent end;
     end.from = skill::State::running;
@@ -302,7 +317,8 @@ bool RemoteArmWorker::judgeStandstill(const Observed& seen, bool at_target) cons
     }
     const auto unmoved = std::chrono::steady_clock::now() - seen.moved;
     // Late news of a motion that has come to its end is no motion.
-    return unmoved > kStandstill || (at_target && (settled_ || unmoved > kStandstillAtTarget));
+    return unmoved > kStandstill ||
+           (at_target && at_own_target_ && (settled_ || unmoved > kStandstillAtTarget));
 }
 
 Safety RemoteArmWorker::judge(const Observed& seen) const {
@@ -327,9 +343,10 @@ Safety RemoteArmWorker::judge(const Observed& seen) const {
     return {};
 }
 
-/// The state of a stopped robot may be seen before the transition that says why.
+/// The state of a stopped robot may be seen before the transition that says why. One of another
+/// maker need not stand by itself.
 bool RemoteArmWorker::awaitsWords(const Observed& seen) const {
-    return seen.words.empty() && state_.safety == SafetyState::normal &&
+    return !session_->isForeign() && seen.words.empty() && state_.safety == SafetyState::normal &&
            std::chrono::steady_clock::now() - seen.safety_since < kLongestSilence;
 }
 
@@ -345,6 +362,8 @@ void RemoteArmWorker::publish() {
         device::largestDifference(state_.commanded_position, state_.position) > kMoved;
     if (stream_ == Stream::none && moved_by_others) {
         state_.commanded_position = state_.position;
+        settled_ = false;
+        at_own_target_ = false;
     }
     state_.stamp = std::chrono::steady_clock::now();
     published_.write(state_);
@@ -403,10 +422,7 @@ void RemoteArmWorker::endReset(Result<void> outcome) {
 
 void RemoteArmWorker::stopNow() {
     if (stream_ == Stream::running && session_ != nullptr) {
-        halted_by_stop_ = true;
-        if (const auto halted = session_->haltStream(); !halted) {
-            fault_ = halted.error().message;
-        }
+        haltStream();
         enterEnding();
     }
     letGo(EndCause::stopped);
@@ -434,6 +450,9 @@ void RemoteArmWorker::startStream() {
     }
     if (const auto started = session_->startStream(parent(), state_.commanded_position); !started) {
         fault_ = started.error().message;  // the next look at it ends the motion
+        if (session_->observed().skill == skill::State::running) {
+            fault_ += "; its position stream is Running, Reset halts it";
+        }
         return;
     }
     stream_ = Stream::running;
@@ -462,9 +481,13 @@ UtcTime RemoteArmWorker::meantFor() const {
 void RemoteArmWorker::cycle() {
     const auto now = std::chrono::steady_clock::now();
     const auto due = static_cast<std::uint64_t>((now - stream_start_) / info_.cycle) + 1;
-    if (due > sent_ + kMostCyclesBehind) {
+    const bool foreign = session_->isForeign();
+    if (due > sent_ + (foreign ? kMostCyclesBehindForeign : kMostCyclesBehind)) {
         // The stream paused: it goes on from here; no part of the path is skipped
         sent_ = due - 1;
+    }
+    if (foreign && session_->isBehind()) {  // it would get all at once what waits on the way
+        sent_ = due;
     }
     while (stream_ == Stream::running && sent_ < due) {
         nextSetPoint();
@@ -480,6 +503,7 @@ void RemoteArmWorker::nextSetPoint() {
     auto set_point = state_.commanded_position;
     done_ = source_->next(state_, set_point) == device::SetPointSource::Next::done;
     state_.commanded_position = set_point;
+    at_own_target_ = true;
     session_->send(set_point, meantFor());
     ++sent_;
     if (done_) {
@@ -495,6 +519,10 @@ void RemoteArmWorker::finishStream() {
         fault_ = fmt::format("{}: {}", info_.name, ending.error().message);
     } else if (*ending == StreamSession::Ending::reached) {
         stream_ = Stream::none;
+        if (const auto seen = session_->observed(); !seen.refused.empty()) {
+            fault_ = fmt::format("{}: {}", info_.name, seen.refused);
+        }
+        observe();  // what came while the end was awaited
         letGo(EndCause::done);
     }
 }
@@ -505,10 +533,15 @@ void RemoteArmWorker::leaveStream() {
     if (session_ == nullptr || !session_->isForeign()) {
         return;
     }
-    halted_by_stop_ = true;
-    if (const auto halted = session_->haltStream(); !halted) {
+    haltStream();
+}
+
+void RemoteArmWorker::haltStream() {
+    const auto halted = session_->haltStream();
+    if (!halted) {
         fault_ = fmt::format("{}: {}", info_.name, halted.error().message);
     }
+    halted_by_stop_ = halted.value_or(false);
 }
 
 void RemoteArmWorker::enterEnding() {

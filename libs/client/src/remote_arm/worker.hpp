@@ -79,6 +79,7 @@ private:
     void nextSetPoint();
     void finishStream();
     void leaveStream();
+    void haltStream();
     void enterEnding();
     void letGo(device::EndCause cause);
     SteadyTime nextWake() const;
@@ -111,7 +112,8 @@ private:
     bool leaves_running_ = false;  // the skill of the stream that runs is not Running any more
     // The source has no more set-points; it gets its end when the stream has ended.
     bool done_ = false;
-    bool settled_ = false;  // the last source came to its end, where the arm stands
+    bool settled_ = false;        // the last source came to its end, where the arm stands
+    bool at_own_target_ = false;  // the commanded position is a set-point that was sent
     bool halted_by_stop_ = false;
     SteadyTime ending_since_;
     SteadyTime stream_start_;
