@@ -91,7 +91,7 @@ public:
         if (!problems_.empty()) {
             return fail(Errc::invalid_argument, report());
         }
-        return Composition{std::move(definition_), std::move(own_)};
+        return Composition{.definition = std::move(definition_), .description = std::move(own_)};
     }
 
 private:
@@ -379,7 +379,11 @@ SkillDescription descriptionOf(const Definition& definition) {
 }
 
 Result<Composition> compose(Definition definition, const Descriptions& used) {
-    return Binder(withoutMissing(std::move(definition), used), used).run();
+    auto composed = Binder(withoutMissing(definition, used), used).run();
+    if (composed) {
+        composed->given = std::move(definition);
+    }
+    return composed;
 }
 
 }  // namespace metier::composition

@@ -147,7 +147,7 @@ Result<void> SequenceSkill::rebind(std::map<std::string, std::unique_ptr<UsedSki
             return fail(Errc::not_found, fmt::format("no use {}", alias));
         }
     }
-    METIER_ASSIGN(auto composed, compose(composition_.definition, descriptionsWith(used_skills)));
+    METIER_ASSIGN(auto composed, compose(composition_.given, descriptionsWith(used_skills)));
     for (const auto& check : checks_) {
         check->giveUp("the skills that it uses were replaced meanwhile");
     }

@@ -26,6 +26,7 @@ public:
         listener = &to;
         return reset_answer;
     }
+    std::string serverUrl() const override { return url; }
     bool runsOthers() const override { return runs_others; }
     void check(const skill::CheckRequest& question, skill::CheckDone done) override {
         if (on_check) {
@@ -99,6 +100,7 @@ public:
     Result<void> resume_answer{};
     std::vector<std::string> calls{};
     skill::StartRequest request{};
+    std::string url{};
     bool runs_others = false;
     /// Answers each Check at once; none: the test does, by check_done.
     std::function<Result<skill::CheckReport>(const skill::CheckRequest&)> on_check{};

@@ -203,6 +203,19 @@ TEST(CheckOfASequence, BelievesAnOlderServerOnlyAboutItsFirstStep) {
     EXPECT_THAT(starts, ElementsAre(0, 0));
 }
 
+TEST(CheckOfASequence, DoesNotBelieveAnOlderServerThatAComposedSkillMayHaveUsed) {
+    Bench bench(kTwoSteps);
+    bench["a"].runs_others = true;
+    bench["a"].url = "opc.tcp://component";
+    bench["a"].on_check = [](const auto& /*request*/) -> CheckReport {
+        return {.ends_known = true};
+    };
+    bench["b"].on_check = [](const auto& /*request*/) -> CheckReport {
+        return {.possible = false, .reason = "the jaws are closed"};
+    };
+    EXPECT_TRUE(reportOf(bench).possible) << "the first step may open them";
+}
+
 TEST(CheckOfASequence, PassesOnTheNotesOfASkillThatIsComposedItself) {
     Bench bench(kTwoSteps);
     bench["a"].runs_others = true;
@@ -300,6 +313,31 @@ with.Target = 3.0
     line.moves(bench, {"a", "b"});
     EXPECT_TRUE(reportOf(bench).possible);
     EXPECT_THAT(line.asked, ElementsAre("a 0->1.5", "a 1.5->9", "b 1.5->3"));
+}
+
+TEST(CheckOfASequence, DoesNotKnowWhereABackgroundStepIsHalted) {
+    Bench bench(kHeadWithGrip + R"(
+[[step]]
+name = "both"
+[[step.parallel]]
+name = "work"
+run = "grip"
+with.Force = 10
+[[step.parallel]]
+name = "aside"
+run = "a"
+with.Target = 2.0
+background = true
+[[step]]
+name = "on"
+run = "b"
+with.Target = 3.0
+)");
+    Line line;
+    line.moves(bench, {"a", "b"});
+    const auto report = reportOf(bench);
+    EXPECT_TRUE(report.possible) << "it may have come near enough";
+    EXPECT_THAT(report.notes, ElementsAre(HasSubstr("step on: MoveSkill b is not possible now")));
 }
 
 const std::string kAny = kHead + R"(
@@ -430,6 +468,18 @@ TEST(CheckOfASequence, ChecksARoundOnceIfAllBeginAtTheSamePlace) {
     EXPECT_EQ(reportOf(bench).reason,
               "step again[1]/there: MoveSkill a cannot be done: 1 m over reach 0.5 m");
     EXPECT_TRUE(reportOf(bench, {{"Times", 0.0}}).possible) << "not once";
+}
+
+TEST(CheckOfASequence, FindsALoopImpossibleThatHasNoEnd) {
+    Bench bench(loop("times = { from = \"Times\" }\nat_most = 9", "1.0"));
+    Line line;
+    line.moves(bench, {"a", "b"});
+    EXPECT_TRUE(reportOf(bench, {{"Times", 9.0}}).possible);
+    EXPECT_EQ(reportOf(bench, {{"Times", 12.0}}).reason, "step again: not done after 9 rounds");
+    Bench endless(loop("while = { from = \"Times\", greater = 5 }\nat_most = 4", "1.0"));
+    line.moves(endless, {"a", "b"});
+    EXPECT_TRUE(reportOf(endless, {{"Times", 5.0}}).possible) << "not once";
+    EXPECT_FALSE(reportOf(endless, {{"Times", 6.0}}).possible);
 }
 
 TEST(CheckOfASequence, NotesALoopWhoseRoundsAreNotKnownBeforeTheRun) {

@@ -110,6 +110,45 @@ TEST_F(RebindOfASequence, IsRefusedWhereTheBindingsDoNotFit) {
     EXPECT_TRUE(bench_["a"].runs()) << "nothing has changed";
 }
 
+TEST(RebindOfWhatIsOptional, GivesAnotherSkillWhatTheOneBeforeDidNotTake) {
+    Bench bench(R"(
+name = "TestSkill"
+rest_time = 2
+[uses.a]
+type = "MoveSkillType"
+[parameters.Share]
+type = "number"
+default = 0.25
+[results.Force]
+type = "number"
+from = "move.Force"
+optional = true
+[[step]]
+name = "move"
+run = "a"
+with.Share = { from = "Share", optional = true }
+)");
+    auto description = moveDescription();
+    auto parameters = description.parameters.toVector();
+    parameters.push_back({.name = "Share", .type = skill::ValueType::number, .optional = true});
+    description.parameters = std::move(parameters);
+    auto results = description.results.toVector();
+    results.push_back({.name = "Force", .type = skill::ValueType::number});
+    description.results = std::move(results);
+    auto used = std::make_unique<ScriptedUsedSkill>("other", description);
+    auto& other = *used;
+    UsedSkills used_skills;
+    used_skills.emplace("a", std::move(used));
+    const auto rebound = bench.skill->rebind(used_skills);
+    ASSERT_TRUE(rebound) << rebound.error().message;
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(other.request.parameters.contains("Share"));
+    EXPECT_EQ(other.request.parameters.at("Share"), skill::Value(0.25));
+    other.finish({{"Force", 3.0}});
+    bench.run();
+    EXPECT_EQ(bench.program->finalResult().at("Force"), skill::Value(3.0)) << bench.why();
+}
+
 TEST_F(RebindOfASequence, KnowsOnlyItsOwnAliases) {
     auto used_skills = other();
     auto node = used_skills.extract("a");

@@ -14,7 +14,8 @@ namespace metier::composition {
 struct Forecast {
     /// Arms that earlier steps have moved, by the address of their server; no values: not known.
     skill::ArmPositions arms{};
-    /// Addresses of servers whose skills earlier steps have used.
+    /// Addresses of servers whose skills earlier steps have used; skill::kEveryOtherArm for those
+    /// that a composed skill may have used.
     std::set<std::string, std::less<>> used{};
 
     /// Place of the arm of a server; nothing: where it stands now; no values: not known.

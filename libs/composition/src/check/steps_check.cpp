@@ -51,11 +51,20 @@ skill::ArmPositions startsFor(const UsedSkill& used, const Forecast& before) {
 bool isCertain(const UsedSkill& used, const CheckReport& report, const Forecast& before) {
     const bool placed = used.runsOthers() ? !before.anyLost() : !before.isLost(used.serverUrl());
     if (report.code.empty()) {
-        const bool touched =
-            used.runsOthers() ? !before.used.empty() : before.used.contains(used.serverUrl());
+        const bool touched = used.runsOthers() ? !before.used.empty()
+                                               : before.used.contains(used.serverUrl()) ||
+                                                     before.used.contains(skill::kEveryOtherArm);
         return placed && !touched;
     }
     return placed && isLasting(report.code);
+}
+
+/// Notes that an earlier step has used a skill, and with it maybe those of any server.
+void noteUse(const UsedSkill& used, Forecast& forecast) {
+    forecast.used.insert(used.serverUrl());
+    if (used.runsOthers()) {
+        forecast.used.insert(std::string(skill::kEveryOtherArm));
+    }
 }
 
 /// Something of the used skill may have moved, and nobody says where it is.
@@ -248,7 +257,7 @@ void StepsCheck::answered(Visit visit, const Result<CheckReport>& report, const 
     if (!report->ends_known) {
         lose(used, visit.before);
     }
-    visit.before.used.insert(used.serverUrl());
+    noteUse(used, visit.before);
     visit.before.move(report->ends);
     then({std::move(visit.before), {}, report->planned_duration});
 }
@@ -266,7 +275,7 @@ void StepsCheck::refused(Visit visit, const CheckReport& report, const Then& the
     if (!report.ends_known) {
         lose(used, visit.before);
     }
-    visit.before.used.insert(used.serverUrl());
+    noteUse(used, visit.before);
     then({std::move(visit.before)});
 }
 
@@ -299,8 +308,10 @@ StepsCheck::Finding StepsCheck::merged(const Visit& visit, const std::vector<Fin
         if (found.refusal) {
             return {anyOf(visit.before, findings), found.refusal};
         }
-        all.after = both(visit.before, all.after, found.after);
-        if (!visit.step.steps[i].background) {
+        if (visit.step.steps[i].background) {  // halted with the others, wherever it is
+            all.after = both(visit.before, all.after, either(visit.before, found.after));
+        } else {
+            all.after = both(visit.before, all.after, found.after);
             all.duration = std::max(all.duration, found.duration);
         }
     }
@@ -411,11 +422,22 @@ Result<StepsCheck::Rounds> StepsCheck::roundsOf(const Step& step) const {
         METIER_ASSIGN(const auto whole, wholeRounds(times));
         rounds = {whole, true};
     }
+    bool may_end = step.until.has_value();  // before `times` or `at_most`
     if (step.condition && resultIn(*step.condition)) {
         rounds.known = rounds.needed = false;
+        may_end = true;
     } else if (step.condition) {
         METIER_ASSIGN(const auto held, scope_.holds(*step.condition));
-        rounds = held ? rounds : Rounds{0, true};
+        if (!held) {
+            return Rounds{0, true};
+        }
+    }
+    if (step.at_most) {
+        const bool too_many = !step.times || (rounds.known && rounds.most > *step.at_most);
+        if (too_many && !may_end) {
+            return fail(Errc::out_of_range, fmt::format("not done after {} rounds", *step.at_most));
+        }
+        rounds.most = std::min<std::uint64_t>(rounds.most, *step.at_most);
     }
     rounds.known = rounds.known && !step.until;
     return rounds;

@@ -18,6 +18,9 @@ struct Composition {
     Definition definition;
     /// Description of the composed skill.
     skill::SkillDescription description;
+    /// The definition as it was given, with what is optional and was left out: other skills may
+    /// have it.
+    Definition given{};
 };
 
 /// Checks names, types, units, ranges and lengths of all bindings against the used skills. What is
