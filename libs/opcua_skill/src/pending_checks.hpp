@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -13,7 +14,7 @@ namespace metier::opcua_skill {
 
 /// Answers of Check that take longer than the call. The session that asks again gets the answer.
 ///
-/// One question of each session; another one replaces it. Threading: the server's thread.
+/// Eight questions of each session; one more replaces the oldest. Threading: the server's thread.
 class PendingChecks {
 public:
     using Ask = std::function<void(const skill::CheckRequest& request, skill::CheckDone done)>;
@@ -32,8 +33,12 @@ private:
         std::optional<Result<skill::CheckReport>> answer{};
         skill::Timer forgotten{};
     };
-    // Not shared: an answer that comes later looks whether its question is still there.
-    std::map<opcua::NodeId, std::shared_ptr<Question>> questions_;
+    void begin(const opcua::NodeId& session, const std::shared_ptr<Question>& question,
+               skill::Executor& executor, const Ask& ask);
+
+    // Oldest first. Not shared: an answer that comes later looks whether its question is still
+    // there.
+    std::map<opcua::NodeId, std::deque<std::shared_ptr<Question>>> questions_;
 };
 
 }  // namespace metier::opcua_skill

@@ -69,7 +69,7 @@ TEST_F(CheckOfASkill, GivesItsAnswerToTheNextCallOfTheSameSessionWithTheSameQues
     ASSERT_TRUE(move_.hand->await("check"));
 }
 
-TEST_F(CheckOfASkill, ForgetsAQuestionThatAnotherOneReplaces) {
+TEST_F(CheckOfASkill, KeepsTheQuestionsOfOneSessionApart) {
     move_.hand->keepChecks();
     ASSERT_FALSE(check(0.1));
     ASSERT_TRUE(move_.hand->await("check"));
@@ -77,7 +77,20 @@ TEST_F(CheckOfASkill, ForgetsAQuestionThatAnotherOneReplaces) {
     ASSERT_FALSE(check(0.3));
     ASSERT_TRUE(move_.hand->await("check"));
     answer(skill::CheckReport{.reason = "second"});
+    EXPECT_EQ(reason(check(0.1)), "first");
     EXPECT_EQ(reason(check(0.3)), "second");
+}
+
+TEST_F(CheckOfASkill, ForgetsTheOldestOfTooManyQuestions) {
+    move_.hand->keepChecks();
+    for (int i = 0; i < 9; ++i) {
+        ASSERT_FALSE(check(0.01 * i));
+        ASSERT_TRUE(move_.hand->await("check"));
+        answer(skill::CheckReport{.reason = std::to_string(i)});
+    }
+    EXPECT_EQ(reason(check(0.01)), "1");
+    EXPECT_EQ(reason(check(0.08)), "8");
+    EXPECT_FALSE(check(0.0)) << "asked anew";
 }
 
 TEST_F(CheckOfASkill, TakesAndReportsThePlacesOfArms) {
