@@ -53,6 +53,15 @@ TEST(DiscoveredServers, AreTakenInTheirOrderWhereAllCanDoTheSame) {
     EXPECT_EQ(assigned->front().server->found.name, "a");
 }
 
+TEST(DiscoveredServers, DoNotLackWhatOneOfThemOffersTwice) {
+    const std::vector servers{server("a", {"Ptp", "Grasp", "Grasp"})};
+    auto grip = use("grip", "GraspType");
+    grip.optional = true;
+    const auto assigned = assign({use("ptp", "PtpType"), grip}, servers);
+    ASSERT_FALSE(assigned) << "its steps would be left out";
+    EXPECT_THAT(assigned.error().message, HasSubstr("uses.grip: "));
+}
+
 TEST(DiscoveredServers, LackWhatNoneOfThemOffers) {
     const std::vector servers{server("a", {"Ptp"})};
     const auto assigned = assign({use("ptp", "PtpType"), use("grip", "GraspType")}, servers);

@@ -84,9 +84,10 @@ Result<std::vector<Assignment>> assign(const std::vector<composition::Use>& uses
             });
         if (taken != assignments.end()) {
             taken->uses.push_back(use);
-        } else if (!use.optional) {
-            problems += fmt::format("{}uses.{}: {}", problems.empty() ? "" : "\n", use.alias,
-                                    choose(use, all).error().message);
+        } else if (const auto none = choose(use, all).error();
+                   !use.optional || none.code != Errc::not_found) {
+            problems +=
+                fmt::format("{}uses.{}: {}", problems.empty() ? "" : "\n", use.alias, none.message);
         }
     }
     std::erase_if(assignments, [](const Assignment& each) { return each.uses.empty(); });
