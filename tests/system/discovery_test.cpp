@@ -212,6 +212,15 @@ TEST_F(FoundServers, ThatCannotBeToldApartRunNothing) {
     EXPECT_THAT(none.output, HasSubstr("no server has WeldSkill; "));
 }
 
+TEST_F(FoundServers, MayHaveASkillIfTheyDoNotAnswer) {
+    ASSERT_TRUE(all_known_);
+    unknown_.kill();
+    const auto refused = onFound({"run", "JointPtpMoveSkill"});
+    EXPECT_NE(refused.status, 0) << "the other arm has moved";
+    EXPECT_THAT(refused.output, HasSubstr(unknown_.url() + " may have JointPtpMoveSkill, too"));
+    EXPECT_NE(onFound({"run", "SwingSkill", "--set", "Target=0,0.5,0,-1,0,1,0"}).status, 0);
+}
+
 TEST_F(FoundServers, AreWatchedTogether) {
     ASSERT_TRUE(all_known_);
     auto watch = link::ChildProcess::start(

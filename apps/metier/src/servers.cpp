@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <future>
+#include <optional>
 #include <utility>
 
 namespace metier::app {
@@ -12,48 +13,68 @@ namespace {
 
 /// Answer of one server to the question for a skill.
 struct SkillAnswer {
-    opcua::FoundServer server;
-    Result<client::SkillAddress> skill;
+    std::string url;
+    Result<client::SkillAddress> skill;  ///< not_found: it has none; other errors: not known
 };
+
+/// Errors: not_found, with the names that it has; others, if it gives no answer, or if several of
+/// its controllers have the skill.
+Result<client::SkillAddress> skillAt(const std::string& url, const std::string& skill,
+                                     const CommandIdentity& identity) {
+    const auto client = connectTo(identity, url);
+    if (!client) {
+        const auto& [code, text] = client.error();
+        return fail(code == Errc::not_found ? Errc::connection_lost : code, text);
+    }
+    return client::findSkill(**client, skill);
+}
 
 /// Asks all servers at the same time: one that does not answer delays none.
 std::vector<SkillAnswer> askFor(const std::string& skill, const CommandIdentity& identity,
                                 const std::vector<opcua::FoundServer>& servers) {
-    const auto ask = [&](const std::string& url) -> Result<client::SkillAddress> {
-        METIER_ASSIGN(const auto client, connectTo(identity, url));
-        return client::findSkill(*client, skill);
-    };
     std::vector<std::future<Result<client::SkillAddress>>> asked;
     for (const auto& server : servers) {
-        asked.push_back(std::async(std::launch::async, ask, server.url));
+        asked.push_back(std::async(
+            std::launch::async, [&, url = server.url] { return skillAt(url, skill, identity); }));
     }
     std::vector<SkillAnswer> answers;
     for (std::size_t i = 0; i < servers.size(); ++i) {
-        answers.push_back({servers[i], asked[i].get()});
+        answers.push_back({servers[i].url, asked[i].get()});
     }
     return answers;
 }
 
-/// The only server that has the skill.
-/// Errors: not_found with what each server answered; invalid_argument if several have it.
+/// The only server that has the skill. One that gives no answer may have it, too: nothing is
+/// commanded then.
+/// Errors: not_found with what each server answered; invalid_argument if several have it; those of
+/// a server that gives no answer.
 Result<std::string> serverWith(const SkillChoice& choice, const CommandIdentity& identity) {
     METIER_ASSIGN(const auto servers, serversOf(choice.servers));
     std::vector<std::string> with;
     std::string others;
+    std::optional<Error> unknown;
     for (const auto& answer : askFor(choice.skill, identity, servers)) {
         if (answer.skill) {
-            with.push_back(answer.server.url);
-        } else {
+            with.push_back(answer.url);
+        } else if (answer.skill.error().code == Errc::not_found) {
             others += fmt::format("; {}", answer.skill.error().message);
+        } else {
+            unknown = {answer.skill.error().code,
+                       fmt::format("{} may have {}, too ({}): name the address of the one that is "
+                                   "meant",
+                                   answer.url, choice.skill, answer.skill.error().message)};
         }
-    }
-    if (with.empty()) {
-        return fail(Errc::not_found, fmt::format("no server has {}{}", choice.skill, others));
     }
     if (with.size() > 1) {
         return fail(Errc::invalid_argument,
                     fmt::format("{} servers have {}: name one of {}", with.size(), choice.skill,
                                 fmt::join(with, ", ")));
+    }
+    if (unknown) {
+        return fail(*unknown);
+    }
+    if (with.empty()) {
+        return fail(Errc::not_found, fmt::format("no server has {}{}", choice.skill, others));
     }
     return with.front();
 }
