@@ -290,6 +290,37 @@ TEST(CheckOfASequence, GoesOnWithTheFirstAlternativeThatIsPossible) {
                 HasSubstr("step try: nothing is left to try: step try/far: MoveSkill a cannot"));
 }
 
+TEST(CheckOfASequence, AlsoLooksAtTheAlternativesOfOneThatMayFailInTheRun) {
+    Bench bench(kHeadWithGrip + R"(
+[[step]]
+name = "try"
+[[step.fallback]]
+name = "grasp"
+run = "grip"
+with.Force = 10
+[[step.fallback]]
+name = "near"
+run = "a"
+with.Target = 1.0
+[[step]]
+name = "on"
+run = "b"
+with.Target = 2.5
+)");
+    Line line;
+    line.moves(bench, {"a", "b"});
+    bench["grip"].on_check = [](const auto& /*request*/) -> CheckReport {
+        return {
+            .possible = false, .reason = "no part", .code = "invalid_state", .ends_known = true};
+    };
+    const auto report = reportOf(bench);
+    EXPECT_TRUE(report.possible) << report.reason;
+    EXPECT_THAT(report.notes,
+                ElementsAre(HasSubstr("step try/grasp: GraspSkill grip is not possible now"),
+                            HasSubstr("step on: MoveSkill b is not possible now")));
+    EXPECT_THAT(line.asked, ElementsAre("a 0->1", "b 0->2.5"));
+}
+
 TEST(CheckOfASequence, BeginsAnAlternativeWhereTheOneBeforeCouldNotGoOn) {
     Bench bench(kHead + R"(
 [[step]]

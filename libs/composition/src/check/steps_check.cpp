@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
 #include "activity.hpp"
 #include "check/known.hpp"
-#include "rounds.hpp"
 
 namespace metier::composition {
 
@@ -22,7 +20,6 @@ namespace {
 // More would keep used servers busy for long.
 constexpr std::size_t kMostQuestions = 200;
 constexpr std::size_t kMostNotes = 100;
-constexpr std::uint64_t kMostRounds = 20;
 
 /// Whether a refusal of that kind depends only on the parameters and on where the arms stand. All
 /// others may be gone when the step begins.
@@ -69,16 +66,12 @@ void noteUse(const UsedSkill& used, Forecast& forecast) {
 
 /// Something of the used skill may have moved, and nobody says where it is.
 void lose(const UsedSkill& used, Forecast& forecast) {
-    forecast.used.insert(used.serverUrl());
+    noteUse(used, forecast);
     if (used.runsOthers()) {
         forecast.move({{std::string(skill::kEveryOtherArm), {}}});
     } else {
         forecast.lose(used.serverUrl());
     }
-}
-
-std::string joined(const std::string& texts, const std::string& text) {
-    return texts.empty() ? text : texts + "; " + text;
 }
 
 }  // namespace
@@ -174,14 +167,13 @@ void StepsCheck::inOrder(const std::vector<Step>& steps, std::size_t index, cons
         return;
     }
     checkStep(steps[index], path, std::move(so_far.after),
-              [this, &steps, index, path, before = so_far.duration,
+              [this, &steps, index, path, before = so_far.duration, sure = so_far.sure,
                then = std::move(then)](Finding found) {
                   found.duration += before;
+                  found.sure = found.sure && sure;
                   inOrder(steps, index + 1, path, std::move(found), then);
               });
 }
-
-// ---- one used skill -----------------------------------------------------------------------------
 
 Result<skill::ValueMap> StepsCheck::argumentsOf(const Step& step) const {
     skill::ValueMap values;
@@ -276,227 +268,13 @@ void StepsCheck::refused(Visit visit, const CheckReport& report, const Then& the
         lose(used, visit.before);
     }
     noteUse(used, visit.before);
-    then({std::move(visit.before)});
+    then({.after = std::move(visit.before), .sure = false});
 }
 
 void StepsCheck::unchecked(Visit visit, const std::string& why, const Then& then) {
     note(fmt::format("{} is not checked: {}", describe(visit), why));
     lose(usedBy(visit.step), visit.before);
-    then({std::move(visit.before)});
-}
-
-// ---- several at the same time -------------------------------------------------------------------
-
-void StepsCheck::branches(Visit visit, Findings findings, const Then& then) {
-    const auto index = findings->size();
-    if (index == visit.step.steps.size()) {
-        then(visit.step.wait_for == WaitFor::all ? merged(visit, *findings)
-                                                 : mergedAny(visit, *findings));
-        return;
-    }
-    const auto& step = visit.step.steps[index];
-    checkStep(step, visit.path, visit.before, [this, visit, findings, then](Finding found) {
-        findings->push_back(std::move(found));
-        branches(visit, findings, then);
-    });
-}
-
-StepsCheck::Finding StepsCheck::merged(const Visit& visit, const std::vector<Finding>& findings) {
-    Finding all{visit.before};
-    for (std::size_t i = 0; i < findings.size(); ++i) {
-        const auto& found = findings[i];
-        if (found.refusal) {
-            return {anyOf(visit.before, findings), found.refusal};
-        }
-        if (visit.step.steps[i].background) {  // halted with the others, wherever it is
-            all.after = both(visit.before, all.after, either(visit.before, found.after));
-        } else {
-            all.after = both(visit.before, all.after, found.after);
-            all.duration = std::max(all.duration, found.duration);
-        }
-    }
-    return all;
-}
-
-/// After branches that were halted, wherever they were.
-Forecast StepsCheck::anyOf(Forecast before, const std::vector<Finding>& findings) {
-    for (const auto& found : findings) {
-        before = either(before, found.after);
-    }
-    return before;
-}
-
-/// The first branch that succeeds ends the others.
-StepsCheck::Finding StepsCheck::mergedAny(const Visit& visit,
-                                          const std::vector<Finding>& findings) {
-    Finding any{anyOf(visit.before, findings)};
-    std::string refusals;
-    std::optional<double> shortest;
-    for (const auto& found : findings) {
-        if (found.refusal) {
-            refusals = joined(refusals, found.refusal->text);
-        } else {
-            shortest = std::min(shortest.value_or(found.duration), found.duration);
-        }
-    }
-    if (!shortest) {
-        any.refusal = impossible(visit, "no branch can be done: " + refusals).refusal;
-    } else if (!refusals.empty()) {
-        note(refusals);
-    }
-    any.duration = shortest.value_or(0.0);
-    return any;
-}
-
-// ---- one of several -----------------------------------------------------------------------------
-
-/// The next one begins where the one before could not go on.
-void StepsCheck::fallback(Visit visit, std::size_t index, std::string refusals, Then then) {
-    if (index == visit.step.steps.size()) {
-        then(impossible(visit, "nothing is left to try: " + refusals));
-        return;
-    }
-    const auto& step = visit.step.steps[index];
-    checkStep(step, visit.path, visit.before,
-              [this, visit, index, refusals = std::move(refusals),
-               then = std::move(then)](Finding found) {
-                  if (found.refusal) {
-                      auto next = visit;
-                      next.before = std::move(found.after);
-                      fallback(std::move(next), index + 1, joined(refusals, found.refusal->text),
-                               then);
-                      return;
-                  }
-                  if (!refusals.empty()) {
-                      note(refusals);
-                  }
-                  then(std::move(found));
-              });
-}
-
-void StepsCheck::choice(Visit visit, const Then& then) {
-    const auto& condition = *visit.step.condition;
-    if (const auto result = resultIn(condition)) {
-        note(fmt::format("{}: its branch depends on {}, which is not known before the run",
-                         describe(visit), *result));
-        eitherBranch(std::move(visit), then);
-        return;
-    }
-    const auto held = scope_.holds(condition);
-    if (!held) {
-        then(impossible(visit, held.error().message));
-        return;
-    }
-    inOrder(*held ? visit.step.steps : visit.step.otherwise, 0, visit.path,
-            {std::move(visit.before)}, then);
-}
-
-void StepsCheck::eitherBranch(Visit visit, const Then& then) {
-    inOrder(visit.step.steps, 0, visit.path, {visit.before}, [this, visit, then](Finding one) {
-        inOrder(visit.step.otherwise, 0, visit.path, {visit.before},
-                [this, one = std::move(one), then](Finding other) {
-                    for (const auto* branch : std::array<const Finding*, 2>{&one, &other}) {
-                        if (branch->refusal && !(one.refusal && other.refusal)) {
-                            note(branch->refusal->text);
-                        }
-                    }
-                    if (one.refusal || other.refusal) {
-                        then(other.refusal ? one : std::move(other));
-                    } else {
-                        then({either(one.after, other.after),
-                              {},
-                              std::max(one.duration, other.duration)});
-                    }
-                });
-    });
-}
-
-// ---- again and again ----------------------------------------------------------------------------
-
-Result<StepsCheck::Rounds> StepsCheck::roundsOf(const Step& step) const {
-    Rounds rounds{step.at_most.value_or(kMostRounds)};
-    if (step.times && resultIn(*step.times)) {
-        rounds.needed = false;
-    } else if (step.times) {
-        METIER_ASSIGN(const auto times, scope_.number(*step.times));
-        METIER_ASSIGN(const auto whole, wholeRounds(times));
-        rounds = {whole, true};
-    }
-    bool may_end = step.until.has_value();  // before `times` or `at_most`
-    if (step.condition && resultIn(*step.condition)) {
-        rounds.known = rounds.needed = false;
-        may_end = true;
-    } else if (step.condition) {
-        METIER_ASSIGN(const auto held, scope_.holds(*step.condition));
-        if (!held) {
-            return Rounds{0, true};
-        }
-    }
-    if (step.at_most) {
-        const bool too_many = !step.times || (rounds.known && rounds.most > *step.at_most);
-        if (too_many && !may_end) {
-            return fail(Errc::out_of_range, fmt::format("not done after {} rounds", *step.at_most));
-        }
-        rounds.most = std::min<std::uint64_t>(rounds.most, *step.at_most);
-    }
-    rounds.known = rounds.known && !step.until;
-    return rounds;
-}
-
-void StepsCheck::loop(Visit visit, const Then& then) {
-    const auto rounds = roundsOf(visit.step);
-    if (!rounds) {
-        then(impossible(visit, rounds.error().message));
-        return;
-    }
-    if (!rounds->known) {
-        note(fmt::format("{}: how often it is repeated is not known before the run",
-                         describe(visit)));
-    }
-    auto before = visit.before;
-    round(std::move(visit), *rounds, 1, {std::move(before)}, then);
-}
-
-/// Ends with the first round that begins where the one before began: all others are as that one.
-void StepsCheck::round(Visit visit, Rounds rounds, std::uint64_t number, Finding so_far,
-                       Then then) {
-    // A second round shows where an unknown number of rounds leads to.
-    const auto most = rounds.known ? rounds.most : std::min<std::uint64_t>(rounds.most, 2);
-    if (number > most || so_far.refusal) {
-        then(std::move(so_far));
-        return;
-    }
-    if (number > kMostRounds) {
-        note(fmt::format("{}: rounds after the first {} are not checked", describe(visit),
-                         kMostRounds));
-        so_far.after.move({{std::string(skill::kEveryOtherArm), {}}});
-        then(std::move(so_far));
-        return;
-    }
-    const auto path = fmt::format("{}[{}]", visit.path, number);
-    const auto& steps = visit.step.steps;
-    inOrder(steps, 0, path, {so_far.after},
-            [this, visit, rounds, number, most, so_far, then](Finding found) {
-                const bool maybe = !rounds.known && (number > 1 || !rounds.needed);
-                if (maybe && found.refusal) {
-                    note(found.refusal->text);
-                    then(so_far);
-                    return;
-                }
-                if (maybe) {
-                    then({either(so_far.after, found.after), {}, so_far.duration});
-                    return;
-                }
-                const bool settled = samePlaces(so_far.after, found.after);
-                const auto equal_rounds = settled && rounds.known ? most - number + 1 : 1;
-                found.duration =
-                    so_far.duration + found.duration * static_cast<double>(equal_rounds);
-                if (settled || found.refusal) {
-                    then(std::move(found));
-                    return;
-                }
-                round(visit, rounds, number + 1, std::move(found), then);
-            });
+    then({.after = std::move(visit.before), .sure = false});
 }
 
 }  // namespace metier::composition

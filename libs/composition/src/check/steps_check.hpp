@@ -56,6 +56,7 @@ private:
         Forecast after;
         std::optional<Refusal> refusal{};
         double duration = 0.0;  ///< as far as known [s]
+        bool sure = true;       ///< without a refusal: that it can be done
     };
     using Then = std::function<void(Finding)>;
     /// A step with what it is in, and what is known when it begins.
@@ -81,6 +82,7 @@ private:
     static Forecast anyOf(Forecast before, const std::vector<Finding>& findings);
     Finding mergedAny(const Visit& visit, const std::vector<Finding>& findings);
     void fallback(Visit visit, std::size_t index, std::string refusals, Then then);
+    void alsoLater(Visit visit, std::size_t index, Finding found, Then then);
     void choice(Visit visit, const Then& then);
     void eitherBranch(Visit visit, const Then& then);
 
