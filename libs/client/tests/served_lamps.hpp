@@ -152,14 +152,14 @@ protected:
         return std::move(SkillHandle::open(served_.client(), lamps_.at(lamp).address).value());
     }
 
-    ServedNodes served_{{}, {"http://opcfoundation.org/UA/DI/"}};
     Calls calls_;
-    opcua::NodeId device_;
-    std::map<std::string, Lamp> lamps_;
-    opcua::NodeId client_;
     // Set before the server is asked, and read on its thread then.
     std::atomic<std::int32_t> lock_status_ = 0;
     std::atomic<bool> refuses_start_ = false;
+    ServedNodes served_{{}, {"http://opcfoundation.org/UA/DI/"}};  // its thread uses the above
+    opcua::NodeId device_;
+    std::map<std::string, Lamp> lamps_;
+    opcua::NodeId client_;
 };
 
 }  // namespace metier::client::testing

@@ -70,6 +70,7 @@ Result<std::uint16_t> HttpServer::serve(const std::string& address, std::uint16_
                                 address, port));
     }
     accepting_ = std::jthread([this] {
+        acceptor_ = std::this_thread::get_id();
         listen_after_bind();
         listened_ = true;
     });
@@ -129,7 +130,7 @@ void HttpServer::converse(Connection& connection) {
 }
 
 bool HttpServer::process_and_close_socket(int socket) {
-    if (std::this_thread::get_id() == accepting_.get_id()) {
+    if (std::this_thread::get_id() == acceptor_.load()) {
         refuse(socket);  // every thread has a connection
     } else {
         {

@@ -12,12 +12,17 @@ void ServerExecutor::post(std::function<void()> work) {
 }
 
 skill::Timer ServerExecutor::after(std::chrono::nanoseconds delay, std::function<void()> work) {
-    const std::lock_guard lock(mutex_);
-    if (server_ == nullptr) {
+    auto* const server = [this] {
+        const std::lock_guard lock(mutex_);
+        return server_;
+    }();
+    if (server == nullptr) {
         return {};
     }
+    // The server does not end meanwhile: this is its thread. Its stack has a lock of its own, which
+    // the thread may have taken before: so none of ours is held here.
     // Shared, because std::function asks for what can be copied.
-    auto timer = std::make_shared<opcua::TimerHandle>(server_->after(delay, std::move(work)));
+    auto timer = std::make_shared<opcua::TimerHandle>(server->after(delay, std::move(work)));
     return skill::Timer([timer] { timer->cancel(); });
 }
 
