@@ -131,13 +131,14 @@ class Repository(unittest.TestCase):
 class Environment(unittest.TestCase):
     """What CMakePresets.json sets for the tests of a preset."""
 
-    def test_the_leaks_of_libraries_are_left_out_under_asan(self):
-        options = test_changed.environment_of("asan")["LSAN_OPTIONS"]
-        file = options.removeprefix("suppressions=").split(":")[0]
-        self.assertTrue(Path(file).is_file(), options)
+    def test_what_libraries_do_is_left_out_under_the_sanitizers(self):
+        for preset, variable in (("asan", "LSAN_OPTIONS"), ("tsan", "TSAN_OPTIONS")):
+            options = test_changed.environment_of(preset)[variable]
+            file = options.removeprefix("suppressions=").split(":")[0]
+            self.assertTrue(Path(file).is_file(), options)
 
     def test_a_preset_without_one_has_none(self):
-        self.assertEqual(test_changed.environment_of("tsan"), {})
+        self.assertEqual(test_changed.environment_of("dev"), {})
 
 
 class Time(unittest.TestCase):
