@@ -1,4 +1,7 @@
 // A copy of all records in a file.
+#include <gmock/gmock.h>
+
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -76,7 +79,9 @@ TEST_P(ExportedStore, IsOneMomentOfAStoreThatIsBeingWritten) {
         EXPECT_EQ(count("SELECT count(*) FROM history"), count("SELECT count(*) FROM executions"))
             << "each has its kind and its note";
         EXPECT_EQ(count("SELECT count(*) FROM executions"), static_cast<std::int64_t>(*exported));
-        EXPECT_EQ(count("SELECT count(*) FROM parts"), count("SELECT count(*) FROM executions"));
+        const auto without_part =
+            count("SELECT count(*) FROM executions") - count("SELECT count(*) FROM parts");
+        EXPECT_THAT(without_part, ::testing::AnyOf(0, 1)) << "the newest may have begun only";
     }
 }
 
