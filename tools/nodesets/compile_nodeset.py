@@ -36,7 +36,8 @@ def compile_to(out: Path, compiler: Path, arguments: list[str]) -> int:
 def store(cached: Path, name: str, compiler: Path, arguments: list[str]) -> int:
     """Compiles into the cache: whole, or not at all. The status of the compiler."""
     cached.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=cached.parent) as folder:
+    # It is gone at the end if it was renamed.
+    with tempfile.TemporaryDirectory(dir=cached.parent, ignore_cleanup_errors=True) as folder:
         status = compile_to(Path(folder) / name, compiler, arguments)
         if status == 0:
             try:
@@ -44,7 +45,6 @@ def store(cached: Path, name: str, compiler: Path, arguments: list[str]) -> int:
             except OSError:
                 if not cached.is_dir():  # else another build was quicker
                     raise
-            Path(folder).mkdir(exist_ok=True)  # what is removed at the end
     return status
 
 
@@ -54,12 +54,11 @@ def main() -> int:
     parser.add_argument("--out", type=Path, required=True, help="path of the results without .c and .h")
     parser.add_argument("--compiler", type=Path, required=True, help="folder of nodeset_compiler.py")
     parser.add_argument("--inputs", type=Path, nargs="+", required=True, help="files that the arguments name")
-    split = sys.argv.index("--")
-    options = parser.parse_args(sys.argv[1:split])
-    arguments = sys.argv[split + 1 :]
-    cached = options.cache / key_of(options.compiler, options.inputs, [options.out.name, *arguments])
+    parser.add_argument("arguments", nargs="+", help="those of nodeset_compiler.py but the last, after --")
+    options = parser.parse_args()
+    cached = options.cache / key_of(options.compiler, options.inputs, [options.out.name, *options.arguments])
     if not cached.is_dir():
-        status = store(cached, options.out.name, options.compiler, arguments)
+        status = store(cached, options.out.name, options.compiler, options.arguments)
         if status != 0:
             return status
     for ending in MADE:
