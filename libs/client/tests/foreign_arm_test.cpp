@@ -95,6 +95,20 @@ private:
     std::vector<SteadyTime> times_;
 };
 
+/// An arm in the middle of a long move.
+class MovingForeignArm : public ::testing::Test {
+protected:
+    void SetUp() override {
+        ASSERT_TRUE(arm_);
+        ASSERT_TRUE(arm_->attach(move_));
+        ASSERT_TRUE(foreign_.awaitSetPoints(5));
+    }
+
+    ForeignArm foreign_;
+    const std::unique_ptr<RemoteArm> arm_ = connect(foreign_);
+    const std::shared_ptr<SmoothMove> move_ = std::make_shared<SmoothMove>(0.5, 100'000);
+};
+
 TEST(ForeignArm, MovesWithItsAxesInAnotherOrderAndInDegrees) {
     ForeignArm foreign;
     const auto arm = connect(foreign);
@@ -147,62 +161,42 @@ TEST(ForeignArm, GetsTheTimesOfItsSetPointsOnlyIfItTakesThem) {
     }
 }
 
-TEST(ForeignArm, EndsTheMotionWhenItsStreamIsHaltedAndMovesAgainAfterReset) {
-    ForeignArm foreign;
-    const auto arm = connect(foreign);
-    const auto move = std::make_shared<SmoothMove>(0.5, 100'000);
-    ASSERT_TRUE(arm->attach(move));
-    ASSERT_TRUE(foreign.awaitSetPoints(5));
-    foreign.go(State::halted);
-    ASSERT_EQ(move->awaitEnd(), EndCause::safety);
-    EXPECT_THAT(move->text(), HasSubstr("the position stream ended (Halted)"));
-    EXPECT_FALSE(arm->attach(std::make_shared<SmoothMove>(0.1, 30)));
-    ASSERT_TRUE(resetUntilDone(*arm));
-    EXPECT_TRUE(foreign.await(State::ready));
+TEST_F(MovingForeignArm, EndsTheMotionWhenItsStreamIsHaltedAndMovesAgainAfterReset) {
+    foreign_.go(State::halted);
+    ASSERT_EQ(move_->awaitEnd(), EndCause::safety);
+    EXPECT_THAT(move_->text(), HasSubstr("the position stream ended (Halted)"));
+    EXPECT_FALSE(arm_->attach(std::make_shared<SmoothMove>(0.1, 30)));
+    ASSERT_TRUE(resetUntilDone(*arm_));
+    EXPECT_TRUE(foreign_.await(State::ready));
     const auto again = std::make_shared<SmoothMove>(0.1, 30);
-    ASSERT_TRUE(arm->attach(again));
+    ASSERT_TRUE(arm_->attach(again));
     EXPECT_EQ(again->awaitEnd(), EndCause::done) << again->text();
 }
 
-TEST(ForeignArm, IsHaltedAtAnEmergencyStop) {
-    ForeignArm foreign;
-    const auto arm = connect(foreign);
-    const auto move = std::make_shared<SmoothMove>(0.5, 100'000);
-    ASSERT_TRUE(arm->attach(move));
-    ASSERT_TRUE(foreign.awaitSetPoints(5));
-    foreign.pressEmergencyStop(true);
-    ASSERT_EQ(move->awaitEnd(), EndCause::safety);
-    EXPECT_EQ(arm->safety().state, SafetyState::emergency_stop);
-    EXPECT_TRUE(foreign.await(State::halted)) << "a stream that nobody writes goes on";
-    foreign.pressEmergencyStop(false);
-    EXPECT_TRUE(awaitSafety(*arm, SafetyState::normal));
+TEST_F(MovingForeignArm, IsHaltedAtAnEmergencyStop) {
+    foreign_.pressEmergencyStop(true);
+    ASSERT_EQ(move_->awaitEnd(), EndCause::safety);
+    EXPECT_EQ(arm_->safety().state, SafetyState::emergency_stop);
+    EXPECT_TRUE(foreign_.await(State::halted)) << "a stream that nobody writes goes on";
+    foreign_.pressEmergencyStop(false);
+    EXPECT_TRUE(awaitSafety(*arm_, SafetyState::normal));
 }
 
-TEST(ForeignArm, IsHaltedAtAStopThatIsReleasedAtOnce) {
-    ForeignArm foreign;
-    const auto arm = connect(foreign);
-    const auto move = std::make_shared<SmoothMove>(0.5, 100'000);
-    ASSERT_TRUE(arm->attach(move));
-    ASSERT_TRUE(foreign.awaitSetPoints(5));
-    foreign.pressEmergencyStop(true);
-    ASSERT_TRUE(foreign.awaitStopReads(2));
-    foreign.pressEmergencyStop(false);
-    ASSERT_TRUE(foreign.await(State::halted));
-    EXPECT_EQ(move->awaitEnd(), EndCause::safety);
+TEST_F(MovingForeignArm, IsHaltedAtAStopThatIsReleasedAtOnce) {
+    foreign_.pressEmergencyStop(true);
+    ASSERT_TRUE(foreign_.awaitStopReads(2));
+    foreign_.pressEmergencyStop(false);
+    ASSERT_TRUE(foreign_.await(State::halted));
+    EXPECT_EQ(move_->awaitEnd(), EndCause::safety);
 }
 
-TEST(ForeignArm, IsHaltedWhenItsStopIsNotKnownAnyMore) {
-    ForeignArm foreign;
-    const auto arm = connect(foreign);
-    const auto move = std::make_shared<SmoothMove>(0.5, 100'000);
-    ASSERT_TRUE(arm->attach(move));
-    ASSERT_TRUE(foreign.awaitSetPoints(5));
-    foreign.loseStop(true);
-    ASSERT_EQ(move->awaitEnd(), EndCause::disconnected);
-    EXPECT_TRUE(foreign.await(State::halted));
-    EXPECT_FALSE(arm->attach(std::make_shared<SmoothMove>(0.1, 30)));
-    foreign.loseStop(false);
-    EXPECT_TRUE(awaitSafety(*arm, SafetyState::normal));
+TEST_F(MovingForeignArm, IsHaltedWhenItsStopIsNotKnownAnyMore) {
+    foreign_.loseStop(true);
+    ASSERT_EQ(move_->awaitEnd(), EndCause::disconnected);
+    EXPECT_TRUE(foreign_.await(State::halted));
+    EXPECT_FALSE(arm_->attach(std::make_shared<SmoothMove>(0.1, 30)));
+    foreign_.loseStop(false);
+    EXPECT_TRUE(awaitSafety(*arm_, SafetyState::normal));
 }
 
 TEST(ForeignArm, LacksASafetyStateIfItsStopHasNoValue) {
@@ -267,27 +261,17 @@ TEST(ForeignArm, DoesNotStandWhileOthersMoveIt) {
     EXPECT_TRUE(testing::awaitState(*arm, [](const auto& state) { return state.standstill; }));
 }
 
-TEST(ForeignArm, IsHaltedWhenItsPositionIsLost) {
-    ForeignArm foreign;
-    const auto arm = connect(foreign);
-    const auto move = std::make_shared<SmoothMove>(0.5, 100'000);
-    ASSERT_TRUE(arm->attach(move));
-    ASSERT_TRUE(foreign.awaitSetPoints(5));
-    foreign.loseEncoders(true);
-    ASSERT_EQ(move->awaitEnd(), EndCause::disconnected);
-    EXPECT_TRUE(foreign.await(State::halted));
+TEST_F(MovingForeignArm, IsHaltedWhenItsPositionIsLost) {
+    foreign_.loseEncoders(true);
+    ASSERT_EQ(move_->awaitEnd(), EndCause::disconnected);
+    EXPECT_TRUE(foreign_.await(State::halted));
 }
 
-TEST(ForeignArm, IsHaltedWhenItRefusesASetPoint) {
-    ForeignArm foreign;
-    const auto arm = connect(foreign);
-    const auto move = std::make_shared<SmoothMove>(0.5, 100'000);
-    ASSERT_TRUE(arm->attach(move));
-    ASSERT_TRUE(foreign.awaitSetPoints(5));
-    foreign.refuseSetPoints();
-    ASSERT_EQ(move->awaitEnd(), EndCause::safety);
-    EXPECT_THAT(move->text(), HasSubstr("BadOutOfRange"));
-    EXPECT_TRUE(foreign.await(State::halted));
+TEST_F(MovingForeignArm, IsHaltedWhenItRefusesASetPoint) {
+    foreign_.refuseSetPoints();
+    ASSERT_EQ(move_->awaitEnd(), EndCause::safety);
+    EXPECT_THAT(move_->text(), HasSubstr("BadOutOfRange"));
+    EXPECT_TRUE(foreign_.await(State::halted));
 }
 
 TEST(ForeignArm, IsHaltedWhenItDoesNotFollow) {
@@ -327,17 +311,12 @@ TEST(ForeignArm, TellsOfAStreamThatWasHaltedAtItsVeryEnd) {
     EXPECT_TRUE(foreign.await(State::ready));
 }
 
-TEST(ForeignArm, IsNotResetAfterAStopThatCameTogetherWithItsOwn) {
-    ForeignArm foreign;
-    const auto arm = connect(foreign);
-    const auto move = std::make_shared<SmoothMove>(0.5, 100'000);
-    ASSERT_TRUE(arm->attach(move));
-    ASSERT_TRUE(foreign.awaitSetPoints(5));
-    foreign.haltsItselfNext();
-    arm->stop();
-    EXPECT_EQ(move->awaitEnd(), EndCause::stopped);
-    EXPECT_TRUE(awaitSafety(*arm, SafetyState::fault));
-    EXPECT_FALSE(arm->attach(std::make_shared<SmoothMove>(0.1, 30)));
+TEST_F(MovingForeignArm, IsNotResetAfterAStopThatCameTogetherWithItsOwn) {
+    foreign_.haltsItselfNext();
+    arm_->stop();
+    EXPECT_EQ(move_->awaitEnd(), EndCause::stopped);
+    EXPECT_TRUE(awaitSafety(*arm_, SafetyState::fault));
+    EXPECT_FALSE(arm_->attach(std::make_shared<SmoothMove>(0.1, 30)));
 }
 
 TEST(ForeignArm, IsHaltedByResetIfItWasLeftRunning) {

@@ -230,7 +230,7 @@ void RemoteArmWorker::observe() {
 void RemoteArmWorker::observeStream(const Observed& seen) {
     leaves_running_ = seen.skill.value_or(skill::State::running) != skill::State::running;
     if (stream_ == Stream::none) {
-        // Another client runs it: what halts it then is not this.
+        // Another client runs it: a Halted that follows is not that of our own stop.
         halted_by_stop_ = halted_by_stop_ && seen.skill != skill::State::running;
         return;
     }
