@@ -33,7 +33,7 @@ bool isDenial(const opcua::Failure& failure) {
            failure.status == opcua::status::kBadIdentityTokenInvalid;
 }
 
-/// The Method that who may command may call: AcquireControl, or Start where there are no leases.
+/// Method that only those may call who may command: AcquireControl, or Start without leases.
 opcua::Answer<opcua::NodeId> commandingMethod(opcua::Client& client, const ServerLink& link) {
     if (link.controllers().empty()) {
         return opcua::failed(opcua::status::kBadNoMatch, "no skill");

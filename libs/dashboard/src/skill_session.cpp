@@ -10,7 +10,6 @@
 namespace metier::dashboard {
 
 using client::AsyncSkill;
-
 using skill::State;
 
 namespace {

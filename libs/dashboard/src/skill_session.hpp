@@ -18,8 +18,8 @@ namespace metier::dashboard {
 /// Whether a skill whose server names no executions runs as it was started here.
 ///
 /// Transitions may be reported late, so an end counts only if as many Running were reported before
-/// as there were starts. An end that is not reported leaves it running until the skill is looked
-/// at. Threading: any.
+/// as there were starts. After an end that is not reported it counts as running; reading the
+/// skill's state shows that it is not. Threading: any.
 class StartedRun {
 public:
     /// Begins a start; false if another one is under way, or what was started may still run.
@@ -53,7 +53,7 @@ public:
     /// The skill, as this session uses it. Errors: the server's.
     opcua::Answer<std::shared_ptr<client::AsyncSkill>> skill(const LinkedSkill& linked);
 
-    /// Starts it. If it can be locked only as a device, the lock stays with this session.
+    /// Starts a skill. Without leases its device is locked, if it can be, until this session ends.
     /// \return id of the execution
     /// Errors: those of AsyncSkill::startWith(); invalid_state, while what was started here runs.
     opcua::Answer<std::string> start(const LinkedSkill& linked, const skill::StartRequest& request);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <future>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -46,7 +47,7 @@ void raiseLoss(Board& board, const std::string& server, const std::string& contr
 
 Result<void> ControlsOfPage::take(const LinkedController& controller, const std::string& tab,
                                   const std::string& name) {
-    std::string holder;
+    std::optional<std::string> holder;
     board_.changeControl(controller.key, [&](ControlState& state) {
         if (!state.held_by.empty() && !(state.held_by == tab && holds(controller.key))) {
             holder = state.held_as;
@@ -56,9 +57,9 @@ Result<void> ControlsOfPage::take(const LinkedController& controller, const std:
         state.held_as = name;
         state.owner = name;
     });
-    if (!holder.empty()) {
-        return fail(Errc::locked,
-                    opcua::sanitise(fmt::format("{}: \"{}\" has control", controller.key, holder)));
+    if (holder) {
+        return fail(Errc::locked, opcua::sanitise(fmt::format("{}: \"{}\" has control",
+                                                              controller.key, *holder)));
     }
     const std::lock_guard lock(mutex_);
     keys_.insert(controller.key);

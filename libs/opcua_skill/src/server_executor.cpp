@@ -19,8 +19,8 @@ skill::Timer ServerExecutor::after(std::chrono::nanoseconds delay, std::function
     if (server == nullptr) {
         return {};
     }
-    // The server does not end meanwhile: this is its thread. Its stack has a lock of its own, which
-    // the thread may have taken before: so none of ours is held here.
+    // Without the lock: the stack has one of its own, which this thread may hold already. The
+    // server cannot end meanwhile, since this is its thread.
     // Shared, because std::function asks for what can be copied.
     auto timer = std::make_shared<opcua::TimerHandle>(server->after(delay, std::move(work)));
     return skill::Timer([timer] { timer->cancel(); });

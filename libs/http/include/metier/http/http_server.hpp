@@ -58,7 +58,7 @@ private:
     std::atomic<bool> listened_ = false;  // serving has begun and ended again
     std::mutex mutex_;
     std::set<int> sockets_;
-    // Of accepting_, which end() changes while connections look who accepts.
+    // The thread of accepting_, which end() moves while connections look who accepts.
     std::atomic<std::thread::id> acceptor_;
     std::jthread accepting_;
 };
