@@ -201,7 +201,8 @@ test('a Halt of the stream halts the move, which goes again after its Reset', as
   const halted = await stopOnTheWay(() => halt(arm.url));
   assert.notStrictEqual(halted.status, 0);
   assert.match(halted.errors, /LabArm: the position stream ended \(Halted\): Halt was called/);
-  assert.strictEqual((await runMetier(['reset', component.url, 'JointPtpMoveSkill'])).status, 0);
+  const reset = await runMetier(['reset', component.url, 'JointPtpMoveSkill']);
+  assert.strictEqual(reset.status, 0, reset.errors);
   const { status, errors } = await move(kHome);
   assert.strictEqual(status, 0, errors);
 });

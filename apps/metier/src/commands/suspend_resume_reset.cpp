@@ -15,6 +15,7 @@ using skill::Method;
 using skill::State;
 
 constexpr auto kResetTimeout = std::chrono::seconds(30);
+constexpr auto kLongestBraking = std::chrono::seconds(2);
 constexpr auto kResetPause = std::chrono::milliseconds(100);
 
 struct Command {
@@ -51,12 +52,18 @@ Exit stayUntilEnd(OpenSkill& open, const CommandOptions& options) {
     return Exit::success;
 }
 
-/// A controller that takes longer for a Reset than its server waits for it is asked again.
+/// Whether a refused Reset may be asked again: by a controller that takes longer for it than its
+/// server waits, and by an arm that has yet to come to rest.
+bool mayAskAgain(const opcua::Failure& refused, std::chrono::steady_clock::duration asked_for) {
+    return (refused.code == Errc::timeout && asked_for < kResetTimeout) ||
+           (refused.code == Errc::resource_unavailable && asked_for < kLongestBraking);
+}
+
 opcua::Answer<> call(client::SkillHandle& skill, const Command& command) {
-    const auto deadline = std::chrono::steady_clock::now() + kResetTimeout;
+    const auto begin = std::chrono::steady_clock::now();
     auto called = skill.call(command.method);
-    while (command.method == Method::reset && !called && called.error().code == Errc::timeout &&
-           std::chrono::steady_clock::now() < deadline) {
+    while (command.method == Method::reset && !called &&
+           mayAskAgain(called.error(), std::chrono::steady_clock::now() - begin)) {
         // The server is not to be kept busy: it may be ready by itself meanwhile, or not.
         static_cast<void>(
             skill.awaitState(command.then, std::chrono::steady_clock::now() + kResetPause));
