@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -34,6 +35,48 @@ void readRobotModel(const TomlTable& table, const std::filesystem::path& folder,
     }
 }
 
+/// Errors, noted in the table: a name that is not one of the servers.
+void checkIsUsed(const TomlTable& table, const char* key, const std::string& name,
+                 const std::vector<UsedServer>& servers) {
+    const bool used = std::any_of(servers.begin(), servers.end(),
+                                  [&](const UsedServer& server) { return server.name == name; });
+    if (!name.empty() && !used) {
+        table.reject(key, fmt::format("\"{}\" is none of \"servers\"", name));
+    }
+}
+
+/// A force of an arm of metier has the axes of that arm's flange.
+Force readForce(const TomlTable& table, const std::vector<UsedServer>& servers) {
+    Force force{.name = table.text("name"),
+                .server = table.text("server"),
+                .variable = table.textOr("variable", ""),
+                .torque = table.textOr("torque", ""),
+                .arm = {},
+                .pose = table.textOr("pose", "")};
+    force.arm = table.textOr("arm", force.variable.empty() ? force.server : "");
+    checkIsUsed(table, "server", force.server, servers);
+    checkIsUsed(table, "arm", force.arm, servers);
+    if (force.variable.empty() && !force.torque.empty()) {
+        table.reject("torque", "is for a force with a \"variable\"");
+    }
+    if (force.arm.empty() && !force.pose.empty()) {
+        table.reject("pose", "is of an \"arm\"");
+    }
+    return force;
+}
+
+std::vector<Force> readForces(const TomlTable& table, const std::vector<UsedServer>& servers) {
+    std::vector<Force> forces;
+    std::set<std::string> names;
+    for (const auto& each : table.tables("force")) {
+        forces.push_back(readForce(each, servers));
+        if (!names.insert(forces.back().name).second) {
+            each.reject("name", fmt::format("\"{}\" is there twice", forces.back().name));
+        }
+    }
+    return forces;
+}
+
 }  // namespace
 
 MoveComponent readMove(const TomlTable& table, const std::filesystem::path& folder) {
@@ -61,6 +104,7 @@ CompositionServer readComposition(const TomlTable& table, const std::filesystem:
             composition.servers.push_back(usedServer(server));
         }
     }
+    composition.forces = readForces(table, composition.servers);
     composition.rebind_after = readRebindAfter(table, composition.rebind_after);
     return composition;
 }

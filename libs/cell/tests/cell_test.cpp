@@ -358,6 +358,58 @@ servers = ["inner", "opc.tcp://127.0.0.1:4840"]
         << around.error().message;
 }
 
+/// A component with `force` as its [[server.force]], and one of its compositions.
+Result<CellConfig> cellWithForce(const std::string& force) {
+    const auto folder = std::filesystem::path(::testing::TempDir()) / "cell_with_force";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "skill.toml") << "name = 'X'\n";
+    std::ofstream(folder / "cell.toml") << R"(name = "cell"
+[[server]]
+name = "press"
+kind = "composition"
+compositions = ["skill.toml"]
+servers = ["opc.tcp://127.0.0.1:4840", "opc.tcp://127.0.0.1:4841"]
+[[server.force]]
+name = "contact"
+server = "opc.tcp://127.0.0.1:4840"
+)" << force;
+    return loadCell(folder / "cell.toml");
+}
+
+TEST(Cell, HasForcesAtWhichSkillsEnd) {
+    const auto forces = [](const std::string& force) {
+        const auto cell = cellWithForce(force);
+        EXPECT_TRUE(cell) << cell.error().message;
+        return cell ? cell->servers[0].as<CompositionServer>()->forces : std::vector<Force>(1);
+    };
+    const auto of_arm = forces("").front();
+    EXPECT_EQ(of_arm.name, "contact");
+    EXPECT_EQ(of_arm.server, "opc.tcp://127.0.0.1:4840");
+    EXPECT_EQ(of_arm.arm, of_arm.server) << "FlangeForce has the axes of that arm's flange";
+    const auto other = forces("variable = \"ns=2;s=F\"\ntorque = \"ns=2;s=T\"\n").front();
+    EXPECT_EQ(other.variable, "ns=2;s=F");
+    EXPECT_EQ(other.torque, "ns=2;s=T");
+    EXPECT_EQ(other.arm, "") << "along the axes of the base frame";
+    const auto turned =
+        forces("variable = \"ns=2;s=F\"\narm = \"opc.tcp://127.0.0.1:4841\"\npose = \"i=7\"\n")
+            .front();
+    EXPECT_EQ(turned.arm, "opc.tcp://127.0.0.1:4841");
+    EXPECT_EQ(turned.pose, "i=7");
+}
+
+TEST(Cell, RefusesForcesThatLeadNowhere) {
+    for (const auto& [force, why] :
+         {std::pair{"arm = \"iiwa\"\n", "server[0].force[0].arm: \"iiwa\" is none of \"servers\""},
+          std::pair{"torque = \"ns=2;s=T\"\n", "torque: is for a force with a \"variable\""},
+          std::pair{"variable = \"ns=2;s=F\"\npose = \"i=7\"\n", "pose: is of an \"arm\""},
+          std::pair{"[[server.force]]\nname = \"contact\"\nserver = \"opc.tcp://127.0.0.1:4841\"\n",
+                    "server[0].force[1].name: \"contact\" is there twice"}}) {
+        const auto cell = cellWithForce(force);
+        ASSERT_FALSE(cell) << force;
+        EXPECT_NE(cell.error().message.find(why), std::string::npos) << cell.error().message;
+    }
+}
+
 Result<CellConfig> cellOfTwo(const std::string& synchronized) {
     return parseCell(R"(name = "cell"
 [[server]]

@@ -105,7 +105,7 @@ Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type
                 failureOf(Errc::not_found, fmt::format("Kinematics has no {}", name)));
         }
     }
-    const std::array<std::pair<std::string_view, NodeId*>, 8> known{
+    const std::array<std::pair<std::string_view, NodeId*>, 9> known{
         {{"ActualJointPosition", &nodes.actual_joint_position},
          {"SafetyState", &nodes.safety_state},
          {"MissedCycles", &nodes.missed_cycles},
@@ -113,7 +113,8 @@ Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type
          {"Standstill", &nodes.standstill},
          {"CycleJitter", &nodes.cycle_jitter},
          {"FlangeForce", &nodes.flange_force},
-         {"FlangeTorque", &nodes.flange_torque}}};
+         {"FlangeTorque", &nodes.flange_torque},
+         {"ActualPose", &nodes.actual_pose}}};
     for (const auto& [name, node] : known) {
         if (const auto found = children.find(name); found != children.end()) {
             *node = found->second;

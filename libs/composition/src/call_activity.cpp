@@ -119,22 +119,13 @@ void CallActivity::onReset(const Result<void>& outcome) {
 void CallActivity::begin() {
     reset_limit_.cancel();
     refusal_.clear();
-    skill::ValueMap parameters;
-    for (const auto& argument : step_.arguments) {
-        const auto* field = skill::findField(used().description().parameters, argument.name);
-        if (field == nullptr) {
-            over(failure(Reason::error, "has no parameter " + argument.name));
-            return;
-        }
-        auto value = run_.scope().evaluate(argument.value, field->type);
-        if (!value) {
-            over(failure(Reason::error, "has no value: " + value.error().message));
-            return;
-        }
-        parameters.emplace(argument.name, std::move(*value));
+    auto parameters = run_.scope().arguments(step_, used().description());
+    if (!parameters) {
+        over(failure(Reason::error, parameters.error().message));
+        return;
     }
     auto request = run_.stepExecution(step_.name, used());
-    request.parameters = std::move(parameters);
+    request.parameters = std::move(*parameters);
     request.on_owner_loss = run_.onOwnerLoss();
     stage_ = Stage::runs;
     begun_ = run_.now();

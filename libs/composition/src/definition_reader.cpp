@@ -123,6 +123,7 @@ Use readUse(const TomlTable& table, const std::string& alias) {
     use.payload = table.amount("payload", "kg");
     use.reset = table.flagOr("reset", false);
     use.optional = table.flagOr("optional", false);
+    use.force = table.textOr("force", "");
     return use;
 }
 

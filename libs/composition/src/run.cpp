@@ -228,6 +228,9 @@ void Run::finish() {
     skill::ValueMap result;
     for (const auto& declared : setup_.composition.definition.results) {
         auto value = scope_.evaluate(declared.from, declared.field.type);
+        if (!value && declared.field.optional && value.error().code == Errc::invalid_argument) {
+            continue;  // the used skill left it Null
+        }
         if (!value) {
             execution_.fail(skill::Reason::error, value.error().message);
             return;

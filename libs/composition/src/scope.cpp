@@ -162,6 +162,35 @@ Result<Value> Scope::evaluate(const Binding& binding, ValueType type) const {
     return at(binding, std::move(value));
 }
 
+bool Scope::leavesOut(const Binding& binding) const {
+    const auto* reference = std::get_if<Reference>(&binding.source);
+    if (!binding.optional || reference == nullptr || !reference->step.empty()) {
+        return false;
+    }
+    const auto given = parameters_.find(reference->name);
+    return given == parameters_.end() || skill::isNull(given->second);
+}
+
+Result<skill::ValueMap> Scope::arguments(const Step& call,
+                                         const skill::SkillDescription& used) const {
+    skill::ValueMap values;
+    for (const auto& argument : call.arguments) {
+        if (leavesOut(argument.value)) {
+            continue;
+        }
+        const auto* field = skill::findField(used.parameters, argument.name);
+        if (field == nullptr) {
+            return fail(Errc::invalid_argument, "has no parameter " + argument.name);
+        }
+        auto value = evaluate(argument.value, field->type);
+        if (!value) {
+            return fail(value.error().code, "has no value: " + value.error().message);
+        }
+        values.emplace(argument.name, std::move(*value));
+    }
+    return values;
+}
+
 Result<double> Scope::number(const Binding& binding) const {
     METIER_ASSIGN(const auto value, evaluate(binding, ValueType::number));
     const auto number = asNumber(value);

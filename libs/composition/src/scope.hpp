@@ -24,6 +24,10 @@ public:
     /// The value of a binding for a target of that type.
     /// Errors: invalid_argument, out_of_range, with the place in the file.
     Result<skill::Value> evaluate(const Binding& binding, skill::ValueType type) const;
+    /// Parameters that a call gives to the used skill. One that is `optional`, and that refers to a
+    /// parameter which has no value in this execution, is left out.
+    /// Errors: invalid_argument, out_of_range: "has no ..."
+    Result<skill::ValueMap> arguments(const Step& call, const skill::SkillDescription& used) const;
     Result<bool> holds(const Condition& condition) const;
     /// Value of a binding to a number of any type.
     Result<double> number(const Binding& binding) const;
@@ -32,6 +36,7 @@ public:
     const skill::ValueMap& parameters() const noexcept { return parameters_; }
 
 private:
+    bool leavesOut(const Binding& binding) const;
     Result<skill::Value> unshifted(const Binding& binding, skill::ValueType type) const;
     Result<std::vector<double>> numbersOf(const std::vector<Term>& terms) const;
     Result<bool> compare(const Condition& condition) const;

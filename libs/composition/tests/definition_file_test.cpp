@@ -96,8 +96,8 @@ timeout = -1
               "c.toml:4: parameters.Speed.unit: \"m/h\" is none of: \"\", \"m\", \"rad\", \"s\", "
               "\"N\", \"N m\", \"m/s\", \"rad/s\", \"m/s²\", \"rad/s²\", \"kg\"\n"
               "c.toml:5: uses.a: no step runs it\n"
-              "c.toml:7: uses.a.resett: unknown key; known here: controller, optional, payload, "
-              "reach, reset, server, type\n"
+              "c.toml:7: uses.a.resett: unknown key; known here: controller, force, optional, "
+              "payload, reach, reset, server, type\n"
               "c.toml:8: step[0].run: \"b\" is not among [uses]: a\n"
               "c.toml:11: step[0].with.Target: there is no parameter \"Sped\"; there are: Speed\n"
               "c.toml:12: step[0].timeout: -1 s is not within 0.001 s to 604800 s");

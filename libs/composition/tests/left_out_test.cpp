@@ -66,6 +66,46 @@ TEST(WhatIsOptional, IsNotGivenToASkillWithoutThatParameter) {
     EXPECT_EQ(bench["a"].request.parameters, (ValueMap{{"Target", 2.0}}));
 }
 
+TEST(WhatIsOptional, IsNotGivenOnIfTheClientHasNotGivenIt) {
+    const auto file = [](const std::string& marked) {
+        return kHead + R"(
+[parameters.Way]
+type = "number"
+optional = true
+[results.Reached]
+type = "number"
+from = "move.Reached"
+optional = true
+[[step]]
+name = "move"
+run = "a"
+with.Target = { from = "Way")" +
+               marked + R"( }
+[[step]]
+name = "next"
+run = "b"
+)";
+    };
+    Bench bench(file(", optional = true"));
+    ASSERT_TRUE(bench.start());
+    EXPECT_EQ(bench["a"].request.parameters, ValueMap{});
+    bench["a"].finish();
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready") << bench.why();
+    EXPECT_EQ(bench.program->finalResult(), (ValueMap{{"Reached", Value{}}}))
+        << "the used skill left it Null";
+
+    Bench given(file(", optional = true"));
+    ASSERT_TRUE(given.start({{"Way", 3.0}}));
+    EXPECT_EQ(given["a"].request.parameters, (ValueMap{{"Target", 3.0}}));
+
+    Bench needed(file(""));
+    ASSERT_TRUE(needed.start());
+    EXPECT_EQ(needed.state(), "Halted");
+    EXPECT_THAT(needed.why(), HasSubstr("Way has no value"));
+}
+
 TEST(WhatIsOptional, IsNullAsAResultThatTheUsedSkillDoesNotGive) {
     Bench bench(kWatched, {"b"});
     ASSERT_TRUE(bench.start());

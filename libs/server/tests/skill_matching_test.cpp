@@ -90,6 +90,9 @@ TEST(SkillMatching, AsksSkillsOfTheSameServerForNothingBesidesTheirType) {
     wanted = use("JointPtpMoveSkillType");
     wanted.controller = "Arm";
     EXPECT_FALSE(checkOwn(wanted));
+    wanted = use("JointPtpMoveSkillType");
+    wanted.force = "contact";
+    EXPECT_FALSE(checkOwn(wanted));
 }
 
 TEST(ArmFigures, AreEnoughIfEachIsKnownAndAtLeastWhatIsWanted) {

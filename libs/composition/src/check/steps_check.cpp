@@ -175,22 +175,6 @@ void StepsCheck::inOrder(const std::vector<Step>& steps, std::size_t index, cons
               });
 }
 
-Result<skill::ValueMap> StepsCheck::argumentsOf(const Step& step) const {
-    skill::ValueMap values;
-    for (const auto& argument : step.arguments) {
-        const auto* field = skill::findField(usedBy(step).description().parameters, argument.name);
-        if (field == nullptr) {
-            return fail(Errc::invalid_argument, "has no parameter " + argument.name);
-        }
-        auto value = scope_.evaluate(argument.value, field->type);
-        if (!value) {
-            return fail(value.error().code, "has no value: " + value.error().message);
-        }
-        values.emplace(argument.name, std::move(*value));
-    }
-    return values;
-}
-
 void StepsCheck::call(Visit visit, const Then& then) {
     for (const auto& argument : visit.step.arguments) {
         if (const auto result = resultIn(argument.value)) {
@@ -201,7 +185,7 @@ void StepsCheck::call(Visit visit, const Then& then) {
             return;
         }
     }
-    auto parameters = argumentsOf(visit.step);
+    auto parameters = scope_.arguments(visit.step, usedBy(visit.step).description());
     if (!parameters) {
         then({std::move(visit.before),
               Refusal{fmt::format("{} {}", describe(visit), parameters.error().message),

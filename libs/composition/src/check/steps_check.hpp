@@ -100,7 +100,6 @@ private:
     void note(std::string text);
     std::string describe(const Visit& visit) const;
     const UsedSkill& usedBy(const Step& step) const;
-    Result<skill::ValueMap> argumentsOf(const Step& step) const;
     void finish(Result<skill::CheckReport> report);
 
     Setup setup_;

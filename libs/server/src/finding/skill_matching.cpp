@@ -43,6 +43,10 @@ Result<void> checkOwn(const composition::Use& use) {
                     "controller, reach and payload choose among skills of other servers; a server "
                     "has one skill of a type");
     }
+    if (!use.force.empty()) {
+        return fail(Errc::invalid_argument,
+                    "a force ends skills of other servers, used by one of kind composition");
+    }
     return {};
 }
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "metier/composition/wrapped_used_skill.hpp"
 #include "metier/skill/json.hpp"
 #include "metier/skill/state.hpp"
 
@@ -53,53 +54,30 @@ records::Outcome outcomeOf(const UsedSkillEnd& end) {
             .reason_text = end.text};
 }
 
-class RecordedUsedSkill final : public UsedSkill, private UsedSkillListener {
+class RecordedUsedSkill final : public composition::WrappedUsedSkill {
 public:
     RecordedUsedSkill(std::unique_ptr<UsedSkill> used, std::shared_ptr<ForeignRecords> records,
                       ForeignPlace place)
-        : used_(std::move(used)), records_(std::move(records)), place_(std::move(place)) {}
+        : WrappedUsedSkill(std::move(used)),
+          records_(std::move(records)),
+          place_(std::move(place)) {}
     ~RecordedUsedSkill() override { end("nobody waited for its end"); }
     RecordedUsedSkill(const RecordedUsedSkill&) = delete;
     RecordedUsedSkill& operator=(const RecordedUsedSkill&) = delete;
 
-    const std::string& name() const override { return used_->name(); }
-    const skill::SkillDescription& description() const override { return used_->description(); }
-    std::string serverUrl() const override { return used_->serverUrl(); }
-    std::string lacks() const override { return used_->lacks(); }
-    Result<void> available() const override { return used_->available(); }
-    State state() const override { return used_->state(); }
-    std::string reasonText() const override { return used_->reasonText(); }
-    bool leftOver() const override { return used_->leftOver(); }
-    bool runsOthers() const override { return used_->runsOthers(); }
-    void check(const skill::CheckRequest& request, skill::CheckDone done) override {
-        used_->check(request, std::move(done));
-    }
-    void compareClocks(std::function<void(Result<composition::ClockOffset>)> done) override {
-        used_->compareClocks(std::move(done));
-    }
-    Result<void> suspend() override { return used_->suspend(); }
-    Result<void> resume() override { return used_->resume(); }
-    void halt() override { used_->halt(); }
-
-    Result<void> reset(UsedSkillListener& listener) override {
-        listener_ = &listener;
-        return used_->reset(*this);
-    }
     void begin(skill::StartRequest request, UsedSkillListener& listener) override {
-        listener_ = &listener;
-        if (const auto lacks = used_->lacks(); !lacks.empty()) {
-            begin(request, lacks);
+        if (const auto lacks = used().lacks(); !lacks.empty()) {
+            beginRecord(request, lacks);
         }
-        used_->begin(std::move(request), *this);
+        WrappedUsedSkill::begin(std::move(request), listener);
     }
     void release() override {
-        listener_ = nullptr;
         end("nobody waited for its end");
-        used_->release();
+        WrappedUsedSkill::release();
     }
 
 private:
-    void begin(const skill::StartRequest& request, const std::string& lacks) {
+    void beginRecord(const skill::StartRequest& request, const std::string& lacks) {
         key_ = records_->begin({.id = request.execution_id,
                                 .server_name = place_.server,
                                 .skill = place_.skill,
@@ -124,49 +102,21 @@ private:
                       outcomeOf({UsedSkillEnd::Kind::lost, {}, Reason::none, std::move(text)}));
     }
 
-    void onReset(const Result<void>& outcome) override {
-        if (listener_ != nullptr) {
-            listener_->onReset(outcome);
-        }
-    }
-    void onStopping(const composition::UsedSkillStop& stop) override {
-        if (listener_ != nullptr) {
-            listener_->onStopping(stop);
-        }
-    }
     void onSuspended() override {
         add(State::running, State::suspended);
-        if (listener_ != nullptr) {
-            listener_->onSuspended();
-        }
+        WrappedUsedSkill::onSuspended();
     }
     void onResumed() override {
         add(State::suspended, State::running);
-        if (listener_ != nullptr) {
-            listener_->onResumed();
-        }
-    }
-    void onProgress(const skill::Value& intermediate) override {
-        if (listener_ != nullptr) {
-            listener_->onProgress(intermediate);
-        }
-    }
-    void onRefused(skill::Method method, const Error& error) override {
-        if (listener_ != nullptr) {
-            listener_->onRefused(method, error);
-        }
+        WrappedUsedSkill::onResumed();
     }
     void onEnd(UsedSkillEnd end) override {
         records_->end(std::exchange(key_, 0), outcomeOf(end));
-        if (auto* listener = std::exchange(listener_, nullptr)) {
-            listener->onEnd(std::move(end));
-        }
+        WrappedUsedSkill::onEnd(std::move(end));
     }
 
-    std::unique_ptr<UsedSkill> used_;
     std::shared_ptr<ForeignRecords> records_;  // shared with the other used skills
     const ForeignPlace place_;
-    UsedSkillListener* listener_ = nullptr;
     ForeignRecords::Key key_ = 0;  // of the execution under way; 0: none is recorded
 };
 

@@ -8,6 +8,7 @@
 #include "finding/skill_matching.hpp"
 #include "host/skill_host.hpp"
 #include "kinds/compositions.hpp"
+#include "kinds/forces.hpp"
 #include "kinds/kinds.hpp"
 #include "kinds/look_times.hpp"
 #include "kinds/rebinder.hpp"
@@ -65,6 +66,7 @@ private:
     std::vector<SkillBinding> bindings_;
     std::unique_ptr<Rebinder> rebinder_;
     std::unique_ptr<SkillHost> host_;  // ends before the servers that its skills use
+    Forces forces_;
 };
 
 /// Finds the used skills of one definition and what to publish of them.
@@ -82,7 +84,8 @@ public:
     Result<void> find(const link::StopSignal& stop) {
         std::string problems;
         for (const auto& use : definition_.uses) {
-            if (const auto found = findOne(use); !found) {
+            const auto found = server_.forces_.check(use).and_then([&] { return findOne(use); });
+            if (!found) {
                 problems +=
                     fmt::format("{}{}:{}: uses.{}: {}", problems.empty() ? "" : "\n",
                                 definition_.file, use.line, use.alias, found.error().message);
@@ -147,17 +150,17 @@ private:
             return fail(std::move(offered.error()));
         }
         auto& remote = *server_.servers_[offered->index];
-        return take(use.alias, remote, offered->address);
+        return take(use, remote, offered->address);
     }
 
-    Result<void> take(const std::string& alias, client::RemoteServer& remote,
+    Result<void> take(const composition::Use& use, client::RemoteServer& remote,
                       const client::SkillAddress& skill) {
         METIER_ASSIGN(auto used, remote.use(skill, origin_));
-        used_skills_.emplace(
-            alias, server_.host_->recorded(std::move(used),
-                                           {remote.name(), skill.controllerName(), skill.name}));
+        auto recorded = server_.host_->recorded(
+            std::move(used), {remote.name(), skill.controllerName(), skill.name});
+        used_skills_.emplace(use.alias, server_.forces_.limit(use, std::move(recorded)));
         remote_.push_back(
-            {alias, remote.url(), skill.name, skill.type_name, skill.controllerName()});
+            {use.alias, remote.url(), skill.name, skill.type_name, skill.controllerName()});
         return {};
     }
 
@@ -190,8 +193,8 @@ private:
             const auto chosen = chooseAll(uses, *server);
             METIER_ASSIGN(auto remote,
                           chosen ? server_.connectFound(*server) : fail(chosen.error()));
-            for (const auto& [alias, skill] : *chosen) {
-                METIER_TRY(take(alias, *remote, skill.address));
+            for (const auto& use : uses) {
+                METIER_TRY(take(use, *remote, chosen->at(use.alias).address));
             }
             spdlog::info("{} uses {} ({})", definition_.name, remote->name(), remote->url());
             bindings_.push_back({definition_.name, nullptr, {}, origin_, uses, remote});
@@ -212,6 +215,7 @@ private:
 Result<void> CompositionServer::begin(const std::vector<Definition>& definitions,
                                       const link::StopSignal& stop) {
     METIER_TRY(connect(config_.servers));
+    METIER_TRY(forces_.connect(config_, identity_));
     METIER_TRY(offer(definitions, stop));
     METIER_TRY(host_->start());
     keepBound();
@@ -226,7 +230,8 @@ CompositionServer::CompositionServer(const cell::ServerConfig& config,
       name_(config.name),
       identity_(identity),
       life_(newLife()),
-      host_(std::move(host)) {}
+      host_(std::move(host)),
+      forces_(name_, *host_) {}
 
 CompositionServer::~CompositionServer() {
     if (rebinder_) {
@@ -246,7 +251,8 @@ void CompositionServer::keepBound() {
                         .own_server = host_->applicationUri(),
                         .rebind_after = std::chrono::duration<double>(config_.rebind_after),
                         .executor = host_->skills().executor(),
-                        .host = *host_},
+                        .host = *host_,
+                        .forces = forces_},
         std::move(bindings_));
 }
 

@@ -10,6 +10,7 @@
 
 #include "host/skill_host.hpp"
 #include "kinds/compositions.hpp"
+#include "kinds/forces.hpp"
 #include "kinds/look_times.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 
@@ -116,12 +117,12 @@ Result<void> Rebinder::exchange(Exchange& parts, SkillBinding& binding) {
     const auto former = binding.server;
     auto done = onExecutor([this, &parts, &binding]() -> Result<void> {
         auto& used_skills = *parts.used_skills;
-        for (auto& [alias, use] : parts.pending) {
-            const auto& address = parts.chosen.at(alias).address;
-            used_skills.emplace(
-                alias, setup_.host.recorded(
-                           parts.server->usedSkill(std::move(use)),
-                           {parts.server->name(), address.controllerName(), address.name}));
+        for (const auto& use : binding.uses) {
+            const auto& address = parts.chosen.at(use.alias).address;
+            auto recorded = setup_.host.recorded(
+                parts.server->usedSkill(std::move(parts.pending.at(use.alias))),
+                {parts.server->name(), address.controllerName(), address.name});
+            used_skills.emplace(use.alias, setup_.forces.limit(use, std::move(recorded)));
         }
         // A server that came back in the meantime stays.
         auto rebound = binding.server->awaySince()

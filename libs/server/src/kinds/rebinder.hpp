@@ -20,6 +20,7 @@
 
 namespace metier::server {
 
+class Forces;
 class SkillHost;
 
 /// Uses of one composed skill that one server serves, which was found.
@@ -50,6 +51,7 @@ public:
         std::chrono::duration<double> rebind_after;  ///< absence of a server [s]
         std::shared_ptr<skill::Executor> executor;   ///< shared by what its thread owns
         SkillHost& host;                             ///< of the component
+        const Forces& forces;                        ///< of the component
     };
 
     Rebinder(Setup setup, std::vector<SkillBinding> bindings);

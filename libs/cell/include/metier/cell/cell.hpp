@@ -97,12 +97,32 @@ struct UsedServer {
     std::string url;
 };
 
+/// A force that a server measures; used skills may end at it.
+struct Force {
+    /// Name by which composition files call it.
+    std::string name;
+    /// Name of the server that measures it, one of the used servers.
+    std::string server;
+    /// NodeId of the force [N], "ns=2;s=Force" or "nsu=urn:lab;s=Force"; empty: the FlangeForce
+    /// and FlangeTorque of the server's arm.
+    std::string variable;
+    /// NodeId of the torque [N m]; empty: none.
+    std::string torque;
+    /// Name of the used server whose arm carries the sensor; empty: the force is measured along
+    /// the axes of the base frame.
+    std::string arm;
+    /// NodeId of the sensor's frame at that server; empty: the pose of the flange.
+    std::string pose;
+};
+
 /// Skills that files declare, made of skills of other servers.
 struct CompositionServer {
     /// Composition files; absolute paths.
     std::vector<std::filesystem::path> files;
     /// Servers that have the used skills.
     std::vector<UsedServer> servers;
+    /// Forces at which used skills may end; names differ.
+    std::vector<Force> forces{};
     /// Whether skills of servers found by discovery are used, too.
     bool discover = false;
     /// Time that a found server may be away before another one is used instead [s].

@@ -35,6 +35,8 @@ struct KinematicsNodes {
     opcua::NodeId flange_force;
     /// Torque, Double[3] [N m], in the axes of the sensor.
     opcua::NodeId flange_torque;
+    /// Measured pose of the flange in the base frame, 3DFrame [m, rad].
+    opcua::NodeId actual_pose;
 };
 
 /// Finds the nodes of the first motion device with Kinematics, in the nearest object above the

@@ -187,6 +187,8 @@ struct Use {
     bool reset = false;
     /// Whether its steps are left out if nothing serves it.
     bool optional = false;
+    /// Name of a force of the component that ends it, too (limitForce()); empty: none.
+    std::string force{};
 };
 
 /// A parameter or result of the composed skill.
