@@ -28,7 +28,6 @@ sockaddr_in loopback(std::uint16_t port) {
 }
 
 const sockaddr* generic(const sockaddr_in& address) {
-    // NOLINTNEXTLINE(*-reinterpret-cast): as POSIX has it
     return reinterpret_cast<const sockaddr*>(&address);
 }
 

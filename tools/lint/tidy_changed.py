@@ -6,13 +6,14 @@
   tools/lint/tidy_changed.py --minutes 10        begins no file after 10 minutes, and prints how many it left out
   tools/lint/tidy_changed.py --list              only prints the files
 
-Findings count in changed files alone, headers among them where a changed source includes them.
+Findings count in changed lines alone, those of headers where a changed source includes them.
 Needs build/lint (cmake --preset lint). Status 1 if clang-tidy has findings, which it prints.
 """
 
 import argparse
 import json
 import os
+import re
 import subprocess
 import sys
 import time
@@ -21,9 +22,10 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools" / "testing"))
-from test_changed import changed_lines, find_base  # noqa: E402: only now on the path
+from test_changed import changed_lines, find_base, git  # noqa: E402: only now on the path
 
 BUILD = "build/lint"
+HUNK = re.compile(r"@@ -\S+ \+(\d+)(?:,(\d+))? @@")
 
 
 def sources(lines: dict[str, int], root: Path) -> list[str]:
@@ -32,9 +34,25 @@ def sources(lines: dict[str, int], root: Path) -> list[str]:
     return sorted(there, key=lambda name: (-lines[name], name))
 
 
-def line_filter(lines: dict[str, int]) -> str:
-    """The changed sources and headers, as clang-tidy takes the files whose findings count."""
-    return json.dumps([{"name": f"/{name}"} for name in sorted(lines) if name.endswith((".cpp", ".hpp"))])
+def changed_ranges(diff: str) -> dict[str, list[list[int]]]:
+    """First and last line of each piece of a file that a diff without context adds or changes."""
+    ranges: dict[str, list[list[int]]] = {}
+    name = ""
+    for row in diff.splitlines():
+        if row.startswith("+++ "):
+            name = row.removeprefix("+++ b/")
+        elif piece := HUNK.match(row):
+            first, count = int(piece[1]), int(piece[2] or 1)
+            if count > 0:
+                ranges.setdefault(name, []).append([first, first + count - 1])
+    return ranges
+
+
+def line_filter(ranges: dict[str, list[list[int]]]) -> str:
+    """The changed lines of sources and headers, as clang-tidy takes the lines whose findings count."""
+    return json.dumps(
+        [{"name": f"/{name}", "lines": pieces} for name, pieces in sorted(ranges.items()) if name.endswith((".cpp", ".hpp"))]
+    )
 
 
 def tidy(name: str, counted: str) -> str:
@@ -77,7 +95,8 @@ def main() -> int:
     if options.list:
         print("\n".join(names))
         return 0
-    findings, left_out = check(names, options.minutes, line_filter(lines))
+    diff = git("diff", "--unified=0", "--no-renames", base) or ""
+    findings, left_out = check(names, options.minutes, line_filter(changed_ranges(diff)))
     for found in findings:
         print(found)
     late = f", {left_out} left out for want of time" if left_out else ""

@@ -50,9 +50,9 @@ std::string Settings::text(std::string_view name) const {
     return textOr(name, {});
 }
 
-std::string Settings::textOr(std::string_view name, std::string fallback) const {
+std::string Settings::textOr(std::string_view name, const std::string& fallback) const {
     const auto* value = find<std::string>(name, "a text");
-    return value == nullptr ? std::move(fallback) : *value;
+    return value == nullptr ? fallback : *value;
 }
 
 bool Settings::flagOr(std::string_view name, bool fallback) const {

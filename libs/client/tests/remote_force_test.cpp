@@ -140,9 +140,16 @@ TEST_F(RemoteForceTest, ReportsEachForceAndItsLoss) {
     (*force)->remove(removed);
     ASSERT_TRUE(served_->client().write(*node, Value::of(std::vector<double>{0, 0, 9})));
     EXPECT_TRUE(executor_->runUntil([&] { return listener.last.z == 9; }));
+    const auto port = served_->port();
     served_.reset();
     EXPECT_TRUE(executor_->runUntil([&] { return !listener.lost.empty(); }));
     EXPECT_FALSE((*force)->newest());
+    served_ = std::make_unique<ServedNodes>(std::vector<std::string>{},
+                                            std::vector<std::string>{"urn:lab"}, port);
+    const auto same = add(Value::of(std::vector<double>{0, 0, 4}));
+    EXPECT_EQ(same, *node);
+    ASSERT_FALSE(served_->url().empty());
+    EXPECT_TRUE(executor_->runUntil([&] { return listener.last.z == 4; })) << "it comes back";
     EXPECT_EQ(removed.last, Vector3{});
     EXPECT_EQ(removed.lost, "");
 }

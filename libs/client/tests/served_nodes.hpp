@@ -20,9 +20,10 @@ public:
 
     /// \param nodesets   as ServerOptions; the types of frames and vectors come with them
     /// \param namespaces as ServerOptions; without `nodesets` the first one has the index 2
+    /// \param port       0: a free one
     explicit ServedNodes(std::vector<std::string> nodesets = {},
-                         std::vector<std::string> namespaces = {})
-        : server_(create(std::move(nodesets), std::move(namespaces))) {}
+                         std::vector<std::string> namespaces = {}, std::uint16_t port = 0)
+        : server_(create(std::move(nodesets), std::move(namespaces), port)) {}
 
     NodeId object(const NodeId& parent, const std::string& name,
                   const NodeId& type = opcua::ids::kBaseObjectType) {
@@ -55,6 +56,7 @@ public:
             .value();
     }
     opcua::AddressSpace& nodes() { return server_->nodes(); }
+    std::uint16_t port() const { return server_->port(); }
 
     /// Starts the server.
     std::string url() {
@@ -72,9 +74,10 @@ public:
 
 private:
     static std::unique_ptr<opcua::Server> create(std::vector<std::string> nodesets,
-                                                 std::vector<std::string> namespaces) {
+                                                 std::vector<std::string> namespaces,
+                                                 std::uint16_t port) {
         opcua::ServerOptions options;
-        options.port = 0;
+        options.port = port;
         options.nodesets = std::move(nodesets);
         options.namespaces = std::move(namespaces);
         return opcua::Server::create(std::move(options)).value();

@@ -70,6 +70,7 @@ void CallActivity::launch() {
 void CallActivity::askReset() {
     stage_ = Stage::resetting;
     if (!reset_limit_.running()) {
+        reset_begun_ = run_.now();
         reset_limit_.start(kLongestReset, [this] { resetTimePassed(); });
     }
     if (const auto asked = used().reset(*this); !asked) {
@@ -77,10 +78,13 @@ void CallActivity::askReset() {
     }
 }
 
-/// A device that takes longer than its server waits for it is asked again.
+/// A device that takes longer than its server waits for it is asked again, and for a while an arm
+/// that has yet to come to rest.
 void CallActivity::resetRefused(const Error& error) {
     used().release();
-    if (error.code != Errc::timeout) {
+    const bool comes_to_rest =
+        error.code == Errc::resource_unavailable && run_.now() - reset_begun_ < run_.restTime();
+    if (error.code != Errc::timeout && !comes_to_rest) {
         over(failure(Reason::error, "refused Reset: " + error.message));
         return;
     }

@@ -66,6 +66,7 @@ private:
     std::string refusal_;                 // text of the last refused Suspend, Halt or Reset
     std::optional<StepFailure> failure_;  // the failure for which it is halted
     skill::Timer rest_timer_;
+    SteadyTime reset_begun_{};
     StepTimer reset_limit_{run_};  // time from the first Reset to Ready
     StepTimer reset_pause_{run_};  // time to the next attempt; the activity is parked meanwhile
 };

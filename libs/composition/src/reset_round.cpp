@@ -38,9 +38,10 @@ public:
     }
 
 private:
-    /// A device that takes longer than its server waits for it is asked again.
+    /// A device that takes longer than its server waits for it is asked again, and an arm that has
+    /// yet to come to rest.
     bool again(const Error& error) {
-        if (error.code != Errc::timeout) {
+        if (error.code != Errc::timeout && error.code != Errc::resource_unavailable) {
             return false;
         }
         pause_ = run_.after(kPause, [this] {
@@ -63,7 +64,8 @@ ResetRound::~ResetRound() = default;
 void ResetRound::start(BoundSkills& skills) {
     for (auto& [alias, bound] : skills) {
         const auto& used = *bound.skill;
-        if (!bound.halted_by_us || !used.available() || used.state() != skill::State::halted) {
+        if (!(bound.halted_by_us || used.leftOver()) || !used.available() ||
+            used.state() != skill::State::halted) {
             continue;
         }
         auto one = std::make_unique<One>(run_, bound, *this);

@@ -201,12 +201,12 @@ TEST_F(ForceLimitedSkillTest, LeavesAMoveHaltedThatCannotBeReset) {
     EXPECT_TRUE(skill_->leftOver()) << "its next use may reset it";
 }
 
-TEST_F(ForceLimitedSkillTest, GivesUpAResetAfterSixSeconds) {
+TEST_F(ForceLimitedSkillTest, GivesUpAResetAfterFourSeconds) {
     begin();
     force_->measure(force({0, 0, 21}));
     line_->reset_answer = fail(Errc::resource_unavailable, "the arm still moves");
     line_->halted();
-    executor_->advance(5'900ms);
+    executor_->advance(3'900ms);
     EXPECT_THAT(listener_.ends, IsEmpty());
     executor_->advance(200ms);
     EXPECT_EQ(onlyEnd().kind, UsedSkillEnd::Kind::finished);
@@ -295,8 +295,73 @@ TEST_F(ForceLimitedSkillTest, HaltsAgainIfItsHaltWasRefused) {
     force_->measure(force({0, 0, 22}));
     EXPECT_THAT(line_->heard(), ElementsAre("begin", "halt"));
     line_->listener->onRefused(skill::Method::halt, {Errc::timeout, "busy"});
-    force_->measure(force({0, 0, 3}));
-    EXPECT_THAT(line_->heard(), ElementsAre("halt")) << "whatever the force is by now";
+    executor_->advance(100ms);
+    EXPECT_THAT(line_->heard(), ElementsAre("halt")) << "without any further force";
+    line_->halted();
+    line_->wasReset();
+    EXPECT_EQ(onlyEnd().kind, UsedSkillEnd::Kind::finished);
+}
+
+TEST_F(ForceLimitedSkillTest, DoesNotWaitForEverForTheEndOfItsHalt) {
+    begin();
+    force_->measure(force({0, 0, 21}));
+    line_->listener->onRefused(skill::Method::halt, {Errc::not_supported, "it has no Halt"});
+    executor_->advance(5'900ms);
+    EXPECT_THAT(listener_.ends, IsEmpty());
+    executor_->advance(200ms);
+    EXPECT_EQ(onlyEnd().kind, UsedSkillEnd::Kind::halted);
+    EXPECT_EQ(onlyEnd().text, "did not end within 6 s after Halt (it has no Halt)");
+    EXPECT_FALSE(line_->runs()) << "nobody listens to it any more";
+}
+
+TEST_F(ForceLimitedSkillTest, AFaultWhileItBrakesIsNoSuccess) {
+    begin();
+    force_->measure(force({0, 0, 21}));
+    line_->stops(State::halted);
+    line_->halted(Reason::error, "a protective stop");
+    EXPECT_EQ(onlyEnd().kind, UsedSkillEnd::Kind::halted);
+    EXPECT_EQ(onlyEnd().text, "a protective stop");
+    EXPECT_THAT(line_->heard(), ElementsAre("begin", "halt")) << "a fault is not reset";
+    EXPECT_FALSE(skill_->leftOver());
+}
+
+TEST_F(ForceLimitedSkillTest, AForceWhileAnotherClientHaltsItIsNoSuccess) {
+    begin();
+    line_->stops(State::halted, "by somebody");
+    EXPECT_THAT(listener_.stops, ElementsAre(State::halted));
+    force_->measure(force({0, 0, 21}));
+    line_->halted(Reason::by_client, "by somebody");
+    EXPECT_EQ(onlyEnd().kind, UsedSkillEnd::Kind::halted);
+    EXPECT_THAT(line_->heard(), ElementsAre("begin"));
+    EXPECT_FALSE(skill_->leftOver());
+}
+
+TEST_F(ForceLimitedSkillTest, TakesAnUnexplainedEndOfAnotherMakersServerForItsHalt) {
+    line_->lacks_text = "no atomic start, no dead-man";
+    begin();
+    force_->measure(force({0, 0, 21}));
+    line_->halted(Reason::none);
+    line_->wasReset();
+    EXPECT_EQ(onlyEnd().kind, UsedSkillEnd::Kind::finished);
+}
+
+TEST_F(ForceLimitedSkillTest, MayResetAMoveThatItsHaltReachedAfterTheEnd) {
+    begin();
+    force_->measure(force({0, 0, 21}));
+    line_->finish({{"LargestPathDeviation", 0.001}});
+    EXPECT_EQ(onlyEnd().kind, UsedSkillEnd::Kind::finished);
+    EXPECT_EQ(result<Vector3>("ForcesExceeded"), (Vector3{0, 0, 21}));
+    EXPECT_EQ(result<double>("LargestPathDeviation"), 0.001);
+    EXPECT_TRUE(skill_->leftOver()) << "Halt makes a Ready skill Halted";
+}
+
+TEST_F(ForceLimitedSkillTest, DoesNotBeginWithAForceThatIsNotFinite) {
+    force_->now = force({0, std::numeric_limits<double>::infinity(), 0});
+    EXPECT_FALSE(skill_->available());
+    begin();
+    turn();
+    EXPECT_EQ(onlyEnd().kind, UsedSkillEnd::Kind::refused);
+    EXPECT_THAT(line_->heard(), IsEmpty());
 }
 
 TEST_F(ForceLimitedSkillTest, AHaltOfItsUserIsAHalt) {
@@ -357,8 +422,10 @@ TEST_F(ForceLimitedSkillTest, ChecksTheMoveAndItsOwnParameters) {
     ASSERT_EQ(reports.size(), 2U);
     ASSERT_TRUE(reports[0]);
     EXPECT_EQ(reports[0]->planned_duration, 2.0);
-    ASSERT_FALSE(reports[1]);
-    EXPECT_EQ(reports[1].error().code, Errc::out_of_range);
+    ASSERT_TRUE(reports[1]);
+    EXPECT_FALSE(reports[1]->possible);
+    EXPECT_EQ(reports[1]->code, "out_of_range");
+    EXPECT_THAT(reports[1]->reason, HasSubstr("no axis has a limit over 0 N"));
 }
 
 }  // namespace

@@ -77,6 +77,28 @@ TEST_F(HaltedBackground, IsAskedAgainIfItsDeviceTakesItsTime) {
     EXPECT_EQ(bench.state(), "Ready");
 }
 
+TEST_F(HaltedBackground, IsAskedAgainWhileItsArmComesToRest) {
+    ends();
+    bench["b"].wasReset(fail(Errc::resource_unavailable, "the arm still moves"));
+    bench.advance(100ms);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset", "reset"));
+    bench["b"].wasReset();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST(ResetOfAUsedSkill, IsAskedAgainForAWhileIfItsArmComesToRest) {
+    Bench bench(testing::kOneThatIsReset);
+    bench["b"].state_now = State::halted;
+    bench["b"].reset_answer = fail(Errc::resource_unavailable, "the arm still moves");
+    ASSERT_TRUE(bench.start());
+    bench.advance(1'900ms);
+    EXPECT_EQ(bench.state(), "Running");
+    bench.advance(200ms);
+    EXPECT_EQ(bench.state(), "Halted") << "another client moves it";
+    EXPECT_THAT(bench.why(), HasSubstr("refused Reset: the arm still moves"));
+}
+
 TEST_F(HaltedBackground, ThatDoesNotAnswerIsNotWaitedForLong) {
     ends();
     bench.advance(2s);

@@ -33,7 +33,7 @@ public:
         address.sin_family = AF_INET;
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         socklen_t size = sizeof address;
-        auto* generic = reinterpret_cast<sockaddr*>(&address);  // NOLINT(*-reinterpret-cast)
+        auto* generic = reinterpret_cast<sockaddr*>(&address);
         EXPECT_EQ(setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes), 0);
         EXPECT_EQ(bind(socket_, generic, size), 0);
         EXPECT_EQ(getsockname(socket_, generic, &size), 0);

@@ -96,7 +96,7 @@ TEST_F(Core, ForgetsAStopThatItsMotionEndedBefore) {
 // copies the safety state and then, for a millisecond, between its look at that and the motion's
 // begin.
 TEST(ArmCore, NeverMovesAnArmThatWasStoppedMeanwhile) {
-    const std::string long_text(40'000'000, 'x');
+    const std::string long_text(40'000'000, 'x');  // NOLINT(bugprone-string-constructor)
     for (int round = 0; round < 3; ++round) {
         ArmCore core({"robot", {"one"}, std::chrono::milliseconds(8)});
         core.setSafety({SafetyState::normal, long_text});

@@ -27,9 +27,7 @@ struct Address {
     sockaddr_un socket{};
     socklen_t size = 0;
 
-    const sockaddr* get() const noexcept {
-        return reinterpret_cast<const sockaddr*>(&socket);  // NOLINT(*-reinterpret-cast): POSIX
-    }
+    const sockaddr* get() const noexcept { return reinterpret_cast<const sockaddr*>(&socket); }
 };
 
 Address addressOf(const std::string& name) {

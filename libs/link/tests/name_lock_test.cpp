@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <string>
 
@@ -21,8 +22,8 @@ std::string nameOf(const std::string& test) {
 class Holder {
 public:
     explicit Holder(const std::string& name, uid_t user = geteuid()) {
-        int ready[2];
-        EXPECT_EQ(pipe(ready), 0);
+        std::array<int, 2> ready{};
+        EXPECT_EQ(pipe(ready.data()), 0);
         pid_ = fork();
         if (pid_ == 0) {
             const bool is_user = user == geteuid() || seteuid(user) == 0;

@@ -159,6 +159,7 @@ public:
 
     bool found() const noexcept { return !best_.empty(); }
     const JointVector& best() const noexcept { return best_; }
+    double cost() const noexcept { return best_cost_; }
     bool anyOutside() const noexcept { return violation_ < kNone; }
     std::string violationText() const {
         return fmt::format("unreachable: axis {} would be at {:.4f} rad, {} limit {:.4f} rad",
@@ -186,6 +187,12 @@ private:
     std::size_t axis_ = 0;
     double value_ = 0;
     double limit_ = 0;
+};
+
+/// A joint position, and how far it is from the reference of a request.
+struct Candidate {
+    JointVector position;
+    double cost = 0;
 };
 
 /// The arm angles round the preferred one, nearest first, then a finer grid.
@@ -358,6 +365,28 @@ bool Kinematics::polish(const Transform& target, JointVector& solution) const no
 Result<JointVector> Kinematics::inverse(const Pose& base_from_flange,
                                         const IkRequest& request) const {
     return search(base_from_flange, request, kind_);
+}
+
+std::vector<JointVector> Kinematics::inverseAll(const Pose& base_from_flange,
+                                                const IkRequest& request) const {
+    if (!checkRequest(*this, base_from_flange, request)) {
+        return {};
+    }
+    std::vector<Candidate> candidates;
+    for (const auto& solution :
+         allSolutions(base_from_flange, request.reference, request.redundancy_angle)) {
+        NearestChoice choice(*this, request);
+        choice.offer(solution);
+        if (choice.found()) {
+            candidates.push_back({choice.best(), choice.cost()});
+        }
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    std::vector<JointVector> positions;
+    std::transform(candidates.begin(), candidates.end(), std::back_inserter(positions),
+                   [](const auto& each) { return each.position; });
+    return positions;
 }
 
 Result<JointVector> Kinematics::inverseNumerically(const Pose& base_from_flange,

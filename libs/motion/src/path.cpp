@@ -15,7 +15,7 @@ constexpr std::size_t kStencil = 5;
 constexpr double kLargestDeviation = 1e-3;
 /// The same beside a knot, by kBesideKnot of an interval, where both begin with the same position:
 /// the speeds of the axes differ little then.
-constexpr double kLargestDeviationBesideKnot = 1e-7;
+constexpr double kLargestDeviationBesideKnot = 3e-9;
 constexpr double kBesideKnot = 0.02;
 /// Most intervals on either side of a singularity that are interpolated for it.
 constexpr std::size_t kMostBeside = 16;
@@ -173,21 +173,21 @@ bool JointPath::passesSingularity(std::size_t interval,
     return false;
 }
 
-PathPoint JointPath::interpolate(std::size_t k, double s) const noexcept {
-    const double h = places_[k + 1] - places_[k];
-    const double u = std::clamp((s - places_[k]) / h, 0.0, 1.0);
-    const std::size_t axes = knots_[k].size();
+PathPoint JointPath::interpolate(std::size_t interval, double s) const noexcept {
+    const double h = places_[interval + 1] - places_[interval];
+    const double u = std::clamp((s - places_[interval]) / h, 0.0, 1.0);
+    const std::size_t axes = knots_[interval].size();
     PathPoint point{JointVector(axes), JointVector(axes), JointVector(axes)};
     for (std::size_t i = 0; i < axes; ++i) {
-        const double m0 = derivatives_[k].first[i] * h;
-        const double m1 = derivatives_[k + 1].first[i] * h;
-        const double b0 = derivatives_[k].second[i] * h * h;
-        const double b1 = derivatives_[k + 1].second[i] * h * h;
-        const double rise = knots_[k + 1][i] - knots_[k][i];
+        const double m0 = derivatives_[interval].first[i] * h;
+        const double m1 = derivatives_[interval + 1].first[i] * h;
+        const double b0 = derivatives_[interval].second[i] * h * h;
+        const double b1 = derivatives_[interval + 1].second[i] * h * h;
+        const double rise = knots_[interval + 1][i] - knots_[interval][i];
         const double c3 = 10 * rise - 6 * m0 - 4 * m1 - 1.5 * b0 + 0.5 * b1;
         const double c4 = -15 * rise + 8 * m0 + 7 * m1 + 1.5 * b0 - b1;
         const double c5 = 6 * rise - 3 * (m0 + m1) - 0.5 * (b0 - b1);
-        point.q[i] = knots_[k][i] + u * (m0 + u * (b0 / 2 + u * (c3 + u * (c4 + u * c5))));
+        point.q[i] = knots_[interval][i] + u * (m0 + u * (b0 / 2 + u * (c3 + u * (c4 + u * c5))));
         point.first[i] = (m0 + u * (b0 + u * (3 * c3 + u * (4 * c4 + u * 5 * c5)))) / h;
         point.second[i] = (b0 + u * (6 * c3 + u * (12 * c4 + u * 20 * c5))) / (h * h);
     }

@@ -149,6 +149,16 @@ TrackRequest trackRequest(const RobotModel& model, const LinRequest& lin, const 
     return request;
 }
 
+/// The request of a line.
+Planned<TrackRequest> trackRequestOf(const RobotModel& model, const LinRequest& request) {
+    METIER_TRY(checkLin(model, request));
+    METIER_ASSIGN(const auto tool, toolOf(model, request.tool_frame));
+    const Pose start = model.kinematics().forward(request.start) * tool.flange_from_tool;
+    TrackRequest wanted = trackRequest(model, request, tool);
+    wanted.path.tool = ToolPath(start, absoluteTarget(start, request.target, request.reference));
+    return wanted;
+}
+
 StoppingEstimate longestStop(const Trajectory& trajectory) {
     constexpr int kPlaces = 200;
     StoppingEstimate longest;
@@ -201,15 +211,64 @@ Planned<Trajectory> Planner::ptp(const PtpRequest& request) const {
     if (!target) {
         return tl::unexpected(targetRefusal(target.error()));
     }
+    if (request.next_line) {
+        METIER_TRY(checkPose(*request.next_line));
+        std::vector<JointVector> targets{*target};  // as without a next line, if that is possible
+        const auto others = model.kinematics().inverseAll(
+            flange, {request.start, request.axis_bounds, request.redundancy_angle});
+        targets.insert(targets.end(), others.begin(), others.end());
+        return ptpBeforeLine(request, targets, tool.flange_from_tool);
+    }
     return withoutCollision(model, planJointLine(model, request, *target, tool.flange_from_tool));
 }
 
+Planned<Trajectory> Planner::ptpBeforeLine(const PtpRequest& request,
+                                           const std::vector<JointVector>& targets,
+                                           const Pose& flange_from_tool) const {
+    constexpr std::size_t kMostTries = 16;
+    const auto tries = std::min(targets.size(), kMostTries);
+    LinRequest next;
+    next.target = *request.next_line;
+    next.tool_frame = request.tool_frame;
+    std::optional<Refusal> nearest;
+    for (std::size_t i = 0; i < tries; ++i) {
+        next.start = targets[i];
+        auto refused = refusalOf(next);
+        if (!refused) {
+            auto plan = withoutCollision(
+                *model_, planJointLine(*model_, request, targets[i], flange_from_tool));
+            if (plan) {
+                return plan;
+            }
+            refused = plan.error();
+        }
+        nearest = nearest ? nearest : refused;
+    }
+    nearest->error.message = fmt::format(
+        "the next line is possible from none of {} joint positions at the target; from the "
+        "nearest: {}",
+        tries, nearest->error.message);
+    return tl::unexpected(std::move(*nearest));
+}
+
+/// Why a line cannot be planned; most of its cost is spared if the axes cannot follow it.
+std::optional<Refusal> Planner::refusalOf(const LinRequest& request) const {
+    const auto wanted = trackRequestOf(*model_, request);
+    if (!wanted) {
+        return wanted.error();
+    }
+    if (!wanted->path.tool.isPoint()) {
+        if (const auto path = track(*wanted, options_); !path) {
+            return path.error();
+        }
+    }
+    const auto plan = lin(request);
+    return plan ? std::nullopt : std::optional(plan.error());
+}
+
 Planned<Trajectory> Planner::lin(const LinRequest& request) const {
-    METIER_TRY(checkLin(*model_, request));
     METIER_ASSIGN(const auto tool, toolOf(*model_, request.tool_frame));
-    const Pose start = model_->kinematics().forward(request.start) * tool.flange_from_tool;
-    TrackRequest wanted = trackRequest(*model_, request, tool);
-    wanted.path.tool = ToolPath(start, absoluteTarget(start, request.target, request.reference));
+    METIER_ASSIGN(const auto wanted, trackRequestOf(*model_, request));
     if (wanted.path.tool.isPoint()) {
         return standStill(*model_, request.start, tool.flange_from_tool);
     }

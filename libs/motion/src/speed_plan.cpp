@@ -257,9 +257,10 @@ private:
             bound.third += std::copysign(kUnseenThird * change, bound.third);
             const ByClock d = byClock(bound, motion);
             const bool runs_on = s.velocity > 0;
-            factor_ = std::max({runs_on ? factor_ : kInfinity, d.first / bound.velocity,
-                                std::sqrt(d.second / bound.acceleration),
-                                std::cbrt(d.third / bound.jerk)});
+            const double least = runs_on ? factor_ : kInfinity;
+            factor_ =
+                std::max({least, d.first / bound.velocity, std::sqrt(d.second / bound.acceleration),
+                          std::cbrt(d.third / bound.jerk)});
             share = std::max({share, d.second / bound.acceleration, d.third / bound.jerk});
         }
         return share;
@@ -323,7 +324,7 @@ private:
 
 /// The plan, slowed down where it would not keep the bounds.
 SpeedPlan withinBounds(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds,
-                       const ExactPath& exact, SpeedPlan plan) {
+                       const ExactPath& exact, const SpeedPlan& plan) {
     const double factor = Excess(places, bounds, exact, plan).factor();
     return factor > 1 + kTolerance ? plan.slowed(factor) : plan;
 }

@@ -60,12 +60,12 @@ SetPoint Trajectory::sampleAt(const ScalarState& clock) const noexcept {
     return sampleOnPath(pathParameter(clock));
 }
 
-SetPoint Trajectory::sampleOnPath(const ScalarState& s) const noexcept {
-    const PathPoint path = plan_->pathAt(s.position);
+SetPoint Trajectory::sampleOnPath(const ScalarState& state) const noexcept {
+    const PathPoint path = plan_->pathAt(state.position);
     SetPoint point{path.q, path.first, path.first};
-    point.velocity.view() = s.velocity * path.first.view();
-    point.acceleration.view() =
-        s.acceleration * path.first.view() + s.velocity * s.velocity * path.second.view();
+    point.velocity.view() = state.velocity * path.first.view();
+    point.acceleration.view() = state.acceleration * path.first.view() +
+                                state.velocity * state.velocity * path.second.view();
     return point;
 }
 

@@ -39,7 +39,7 @@ TEST_P(BlendedPathOf, StaysInTheSphereOfEveryCornerAndEndsAtTheLastPose) {
     const Pose start = plan->toolPose(model_.home());
     std::vector<Eigen::Vector3d> corners{start.translation};
     for (const PathWaypoint& waypoint : request.waypoints) {
-        corners.push_back(corners.back() + waypoint.target.translation);
+        corners.emplace_back(corners.back() + waypoint.target.translation);
     }
     for (int i = 0; i <= 500; ++i) {
         const Pose pose = plan->poseAt(i / 500.0);

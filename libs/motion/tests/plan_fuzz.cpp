@@ -187,15 +187,28 @@ std::string PlanFuzz::check(const Planned<Trajectory>& planned, const ToolLimits
     if (!std::isfinite(duration) || duration < 0) {
         return fmt::format("duration {}", duration);
     }
-    const auto at = [&](double time) { return plan.sample(Seconds(time)); };
-    if (maxDifference(at(0).position, start) > 1e-9 ||
-        maxDifference(at(duration).position, plan.end()) > 1e-9) {
+    const auto at = [&](double time) { return plan.sample(Seconds(time)).position; };
+    if (maxDifference(at(0), start) > 1e-9 || maxDifference(at(duration), plan.end()) > 1e-9) {
         return "does not run from its start to its end";
     }
     const bool moves = maxDifference(start, plan.end()) > 1e-6;
-    if (moves && maxDifference(at(0.97 * duration).position, plan.end()) < 1e-13) {
+    if (moves && maxDifference(at(0.97 * duration), plan.end()) < 1e-13) {
         return "ends before its duration";
     }
+    const double step = std::clamp(duration / 200, 1e-4, 1e-3) * between(0.5, 1);
+    constexpr int kPlaces = 40;
+    for (int place = 0; place < kPlaces; ++place) {
+        const double begin = (place + between(0, 1)) / kPlaces * (duration + 4 * step) - 4 * step;
+        if (auto fault = checkAt(plan, begin, step, tool); !fault.empty()) {
+            return fmt::format("{} at {:.6f} s of {:.6f} s, step {:.6f}, stretched {}", fault,
+                               begin, duration, step, stretch);
+        }
+    }
+    return {};
+}
+
+std::string PlanFuzz::checkAt(const Trajectory& plan, double begin, double step,
+                              const ToolLimits& tool) {
     std::string fault;
     const auto use = [&](const char* what, double value, double limit, double rounding) {
         const double share = (std::abs(value) - rounding) / limit;
@@ -205,48 +218,37 @@ std::string PlanFuzz::check(const Planned<Trajectory>& planned, const ToolLimits
             fault = fmt::format("{} {:.4f} of its limit {}", what, share, limit);
         }
     };
-    const double step = std::clamp(duration / 200, 1e-4, 1e-3) * between(0.5, 1);
-    constexpr int places = 40;
-    for (int place = 0; place < places && fault.empty(); ++place) {
-        const double begin = (place + between(0, 1)) / places * (duration + 4 * step) - 4 * step;
-        std::array<JointVector, 4> q;
-        std::array<Pose, 3> pose;
-        for (std::size_t n = 0; n < q.size(); ++n) {
-            q[n] = at(begin + static_cast<double>(n) * step).position;
-            if (!q[n].allFinite()) {
-                return fmt::format("not finite at {} s of {} s", begin, duration);
-            }
-            if (n < pose.size()) {
-                pose[n] = plan.toolPose(q[n]);
-            }
+    std::array<JointVector, 4> q;
+    std::array<Pose, 3> pose;
+    for (std::size_t n = 0; n < q.size(); ++n) {
+        q[n] = plan.sample(Seconds(begin + static_cast<double>(n) * step)).position;
+        if (!q[n].allFinite()) {
+            return "not finite";
         }
-        for (std::size_t i = 0; i < q[0].size(); ++i) {
-            const JointLimits& own = model_->limits(i);
-            const double v = (q[1][i] - q[0][i]) / step;
-            const double a = (q[2][i] - 2 * q[1][i] + q[0][i]) / (step * step);
-            const double j = (q[3][i] - 3 * q[2][i] + 3 * q[1][i] - q[0][i]) / (step * step * step);
-            const double noise = kRounding * 4;
-            use("axis velocity", v, own.velocity, noise / step);
-            use("axis acceleration", a, own.acceleration, noise / (step * step));
-            use("axis jerk", j, own.jerk, 2 * noise / (step * step * step));
-        }
-        const Vector3d v0 = (pose[1].translation - pose[0].translation) / step;
-        const Vector3d v1 = (pose[2].translation - pose[1].translation) / step;
-        const Vector3d w0 =
-            motion::rotationVectorBetween(pose[0].rotation, pose[1].rotation) / step;
-        const Vector3d w1 =
-            motion::rotationVectorBetween(pose[1].rotation, pose[2].rotation) / step;
-        const double noise = kRounding * 8;
-        use("tool velocity", v0.norm(), tool.velocity, noise / step);
-        use("tool angular velocity", w0.norm(), tool.angular_velocity, noise / step);
-        use("tool acceleration", (v1 - v0).norm() / step, tool.acceleration, noise / (step * step));
-        use("tool angular acceleration", (w1 - w0).norm() / step, tool.angular_acceleration,
-            noise / (step * step));
-        if (!fault.empty()) {
-            fault += fmt::format(" at {:.6f} s of {:.6f} s, step {:.6f}, stretched {}", begin,
-                                 duration, step, stretch);
+        if (n < pose.size()) {
+            pose[n] = plan.toolPose(q[n]);
         }
     }
+    for (std::size_t i = 0; i < q[0].size(); ++i) {
+        const JointLimits& own = model_->limits(i);
+        const double v = (q[1][i] - q[0][i]) / step;
+        const double a = (q[2][i] - 2 * q[1][i] + q[0][i]) / (step * step);
+        const double j = (q[3][i] - 3 * q[2][i] + 3 * q[1][i] - q[0][i]) / (step * step * step);
+        const double noise = kRounding * 4;
+        use("axis velocity", v, own.velocity, noise / step);
+        use("axis acceleration", a, own.acceleration, noise / (step * step));
+        use("axis jerk", j, own.jerk, 2 * noise / (step * step * step));
+    }
+    const Vector3d v0 = (pose[1].translation - pose[0].translation) / step;
+    const Vector3d v1 = (pose[2].translation - pose[1].translation) / step;
+    const Vector3d w0 = motion::rotationVectorBetween(pose[0].rotation, pose[1].rotation) / step;
+    const Vector3d w1 = motion::rotationVectorBetween(pose[1].rotation, pose[2].rotation) / step;
+    const double noise = kRounding * 8;
+    use("tool velocity", v0.norm(), tool.velocity, noise / step);
+    use("tool angular velocity", w0.norm(), tool.angular_velocity, noise / step);
+    use("tool acceleration", (v1 - v0).norm() / step, tool.acceleration, noise / (step * step));
+    use("tool angular acceleration", (w1 - w0).norm() / step, tool.angular_acceleration,
+        noise / (step * step));
     return fault;
 }
 

@@ -38,8 +38,10 @@ private:
     void limit(LinRequest& request);
     PathRequest anyPath();
     PtpRequest anyPtp();
-    std::string check(const Planned<Trajectory>& plan, const struct ToolLimits& limits,
+    std::string check(const Planned<Trajectory>& planned, const struct ToolLimits& tool,
                       const JointVector& start);
+    /// Four set-points from `begin`, `step` apart [s].
+    std::string checkAt(const Trajectory& plan, double begin, double step, const ToolLimits& tool);
 
     const std::vector<RobotModel>& models_;
     std::uint64_t seed_;

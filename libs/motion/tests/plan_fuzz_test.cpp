@@ -6,11 +6,22 @@
 namespace metier::motion {
 namespace {
 
-TEST(PlannerFuzz, EveryMotionIsFiniteWithinItsLimitsAndAsLongAsItSays) {
+std::vector<RobotModel> everyRobot() {
     std::vector<RobotModel> models;
     for (const std::string& name : kRobots) {
         models.push_back(loadRobot(name));
     }
+    return models;
+}
+
+// An iiwa passes a singularity: the joint positions left the interpolated path with another speed.
+TEST(PlannerFuzz, LeavesASingularityWithoutAJolt) {
+    const auto models = everyRobot();
+    EXPECT_EQ(PlanFuzz(models, 52, 137'299).next(), "");
+}
+
+TEST(PlannerFuzz, EveryMotionIsFiniteWithinItsLimitsAndAsLongAsItSays) {
+    const auto models = everyRobot();
     PlanFuzz fuzz(models, 1);
     const int count = scaled(3000);
     for (int i = 0; i < count; ++i) {

@@ -138,6 +138,61 @@ LinRequest randomLin(const RobotModel& model, std::mt19937_64& random) {
 using PtpOf = EachRobot;
 INSTANTIATE_TEST_SUITE_P(Robots, PtpOf, testing::ValuesIn(kRobots), robotName);
 
+/// Random PTP to a pose, and the end of a line from there.
+PtpRequest randomPtpBeforeLine(const RobotModel& model, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    PtpRequest request;
+    request.start = randomPosition(model, random);
+    const Pose target = model.kinematics().forward(randomPosition(model, random));
+    request.target = target;
+    Pose next = target;
+    next.translation += 0.3 * Eigen::Vector3d(unit(random), unit(random), unit(random));
+    request.next_line = next;
+    return request;
+}
+
+TEST_P(PtpOf, EndsInAJointPositionFromWhichTheNextLineIsPossible) {
+    std::mt19937_64 random(11);
+    const Planner planner(model_);
+    int by_the_nearest = 0;
+    int by_another = 0;
+    for (int i = 0; i < scaled(200); ++i) {
+        const auto request = randomPtpBeforeLine(model_, random);
+        auto without = request;
+        without.next_line.reset();
+        const auto line = [&](const Planned<Trajectory>& ptp) {
+            LinRequest next;
+            next.target = *request.next_line;
+            next.start = ptp ? ptp->end() : JointVector();
+            return ptp && planner.lin(next);
+        };
+        const auto nearest = planner.ptp(without);
+        const auto plan = planner.ptp(request);
+        if (line(nearest)) {
+            ++by_the_nearest;
+            ASSERT_TRUE(plan) << plan.error().error.message;
+            EXPECT_LT(maxDifference(plan->end(), nearest->end()), 1e-9) << "no detour";
+        } else if (plan) {
+            ++by_another;
+            EXPECT_TRUE(line(plan)) << "number " << i;
+        }
+    }
+    EXPECT_GT(by_the_nearest, 0);
+    EXPECT_GT(by_another, 0);
+}
+
+TEST_P(PtpOf, IsRefusedIfTheNextLineIsPossibleFromNowhere) {
+    PtpRequest request;
+    request.start = model_.home();
+    request.target = model_.kinematics().forward(model_.home());
+    request.next_line = std::get<Pose>(request.target);
+    request.next_line->translation.x() += 100;
+    const auto plan = Planner(model_).ptp(request);
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(plan.error().reason, RefusalReason::unreachable);
+    EXPECT_THAT(plan.error().error.message, HasSubstr("the next line is possible from none of "));
+}
+
 TEST_P(PtpOf, RunsStraightInJointSpaceWithinTheLimitsOfEveryAxis) {
     std::mt19937_64 random(1);
     const double cycle = model_.cycleTime();

@@ -48,7 +48,8 @@ void use(const Value& value) {
     if (!nlohmann::json::accept(value.toJson())) {
         std::abort();
     }
-    const Value copy = value;
+    const Value copy =
+        value;  // NOLINT(performance-unnecessary-copy-initialization): it is what is tried
     if (!(copy == value) || copy.size() != value.size()) {
         std::abort();
     }

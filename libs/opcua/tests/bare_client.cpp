@@ -44,7 +44,7 @@ BareClient::FilterResult resultOf(const UA_MonitoredItemCreateResult& result) {
 
 }  // namespace
 
-BareClient::BareClient() : client_(nullptr) {
+BareClient::BareClient() {
     UA_ClientConfig config{};
     config.logging = &kSilent;
     UA_ClientConfig_setDefault(&config);

@@ -82,7 +82,7 @@ private:
     /// `item` needs all but the node and the attribute, which is Value.
     StatusCode writeItem(const NodeId& variable, UA_WriteValue item);
 
-    UA_Client* client_;
+    UA_Client* client_ = nullptr;
     UA_UInt32 subscription_ = 0;
 };
 

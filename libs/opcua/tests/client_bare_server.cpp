@@ -104,7 +104,7 @@ void addMethod(UA_Server* server, const NodeId& id, UA_MethodCallback callback,
                Arguments arguments) {
     std::array<UA_Argument, 2> inputs{};
     std::array<UA_Argument, 1> outputs{};
-    for (auto* argument : {&inputs[0], &inputs[1], &outputs[0]}) {
+    for (auto* argument : {inputs.data(), &inputs[1], outputs.data()}) {
         argument->dataType = arguments.type.typeId;
         argument->valueRank = UA_VALUERANK_SCALAR;
     }

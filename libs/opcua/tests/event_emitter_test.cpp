@@ -67,7 +67,7 @@ Event transition(std::uint32_t number) {
 /// A server with a Skill on a Device, both notifiers, and an emitter of Program transitions.
 class EventEmitterTest : public ::testing::Test {
 protected:
-    explicit EventEmitterTest(ServerOptions options = testOptions())
+    explicit EventEmitterTest(const ServerOptions& options = testOptions())
         : server_(makeServer(options)), emitter_(prepare()) {
         EXPECT_TRUE(server_->start());
         EXPECT_EQ(client_.connect(server_->endpointUrl()), status::kGood);

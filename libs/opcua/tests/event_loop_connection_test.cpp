@@ -131,7 +131,6 @@ protected:
         return opened_.empty() ? 0 : opened_.back();
     }
 
-    // NOLINTNEXTLINE(readability-function-size): the interface's parameters
     static void callback(UA_ConnectionManager*, uintptr_t id, void* application, void** context,
                          UA_ConnectionState state, const UA_KeyValueMap* parameters,
                          UA_ByteString message) {

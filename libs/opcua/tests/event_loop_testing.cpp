@@ -21,7 +21,6 @@ UA_String view(const std::string& text) {
 }  // namespace
 
 struct TestServerCallbacks {
-    // NOLINTBEGIN(readability-function-size): the stack's parameters
     static UA_StatusCode echo(UA_Server*, const UA_NodeId*, void*, const UA_NodeId*, void* context,
                               const UA_NodeId*, void*, size_t, const UA_Variant* input, size_t,
                               UA_Variant* output) {
@@ -42,7 +41,6 @@ struct TestServerCallbacks {
             self.event_connections_.insert(self.loop_->currentConnection());
         }
     }
-    // NOLINTEND(readability-function-size)
 
     static void addMethods(UA_Server* server, TestServer* self) {
         UA_Argument text;

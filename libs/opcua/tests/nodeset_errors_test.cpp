@@ -192,7 +192,8 @@ TEST_F(NodesetErrors, SayNothingOfWhatIsBelowANodeThatIsMissing) {
 TEST_F(NodesetErrors, NameADeeplyNestedValue) {
     std::string value = "<uax:Double>1</uax:Double>";
     for (int i = 0; i < 1000; ++i) {
-        value = "<uax:Variant><uax:Value>" + value + "</uax:Value></uax:Variant>";
+        value.insert(0, "<uax:Variant><uax:Value>");
+        value += "</uax:Value></uax:Variant>";
     }
     EXPECT_THAT(refusalOf(speed(R"(DataType="i=24")", value)),
                 HasSubstr("machine.xml:15: nested more than 64 times"));

@@ -46,7 +46,7 @@ NodesetFolder::~NodesetFolder() {
 }
 
 std::filesystem::path NodesetFolder::write(const std::string& name, std::string_view text) const {
-    const auto path = folder_ / name;
+    auto path = folder_ / name;
     std::ofstream(path, std::ios::binary) << text;
     return path;
 }

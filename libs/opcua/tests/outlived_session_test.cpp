@@ -37,7 +37,7 @@ NodeId addCounted(Server& server, std::atomic<int>& reads) {
     spec.node = {NodeId(2, "counted"), ids::kObjectsFolder, ids::kHasComponent, {2, "counted"}};
     spec.data_type = ids::kDouble;
     spec.value = Value::of(0.0);
-    const auto node = server.nodes().addVariable(spec).value();
+    auto node = server.nodes().addVariable(spec).value();
     EXPECT_TRUE(server.nodes().setDataSource(
         node, {[&reads](const Session&) { return DataValue{Value::of(1.0 + ++reads)}; }, {}}));
     return node;

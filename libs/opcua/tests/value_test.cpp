@@ -352,7 +352,7 @@ TEST(Value, TakesAllOfAnArrayOrNone) {
     UA_Range range{1.0, 2.0};
     UA_ThreeDVector vector{1.0, 2.0, 3.0};
     std::array<UA_ExtensionObject, 3> objects{};
-    UA_ExtensionObject_setValueNoDelete(&objects[0], &range, &UA_TYPES[UA_TYPES_RANGE]);
+    UA_ExtensionObject_setValueNoDelete(objects.data(), &range, &UA_TYPES[UA_TYPES_RANGE]);
     UA_ExtensionObject_setValueNoDelete(&objects[1], &vector, &UA_TYPES[UA_TYPES_THREEDVECTOR]);
     UA_Variant variant;
     UA_Variant_setArray(&variant, objects.data(), 2, &UA_TYPES[UA_TYPES_EXTENSIONOBJECT]);

@@ -6,8 +6,8 @@ namespace metier::robot_files {
 
 namespace {
 
-std::pair<std::string, std::string> ordered(std::string first, std::string second) {
-    return std::minmax(std::move(first), std::move(second));
+std::pair<std::string, std::string> ordered(const std::string& first, const std::string& second) {
+    return std::minmax(first, second);
 }
 
 }  // namespace

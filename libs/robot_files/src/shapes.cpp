@@ -120,7 +120,7 @@ double ShapeReader::length(pugi::xml_node shape, const char* attribute) {
 }
 
 Vector3d ShapeReader::boxSize(pugi::xml_node box) {
-    const Vector3d size = file_.vector(box, "size", Vector3d::Zero());
+    Vector3d size = file_.vector(box, "size", Vector3d::Zero());
     empty_ = empty_ || size.minCoeff() <= 0.0;
     return size;
 }

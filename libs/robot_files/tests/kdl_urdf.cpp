@@ -1,5 +1,7 @@
 #include "kdl_urdf.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <pugixml.hpp>
 #include <sstream>
@@ -55,7 +57,7 @@ KDL::Chain KdlUrdf::read(const std::string& urdf, const std::string& base, const
     for (std::string link = tip; link != base;) {
         const auto joint = jointTo(document.child("robot"), link);
         if (!joint) {
-            throw std::runtime_error("no chain from " + base + " to " + tip);
+            throw std::runtime_error(fmt::format("no chain from {} to {}", base, tip));
         }
         segments.push_back(segmentOf(joint));
         link = joint.child("parent").attribute("link").value();

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "bench.hpp"
+#include "metier/motion/frame.hpp"
 
 namespace metier::robot_skills {
 namespace {
@@ -55,6 +56,19 @@ TEST(MovePlanning, TellsReasonAxisAndPlaceOfARefusal) {
     ASSERT_FALSE(plan);
     EXPECT_EQ(plan.error().reason, RefusalReason::joint_limit);
     EXPECT_EQ(plan.error().axis, 5U);
+}
+
+TEST(MovePlanning, EndsAPtpWhereTheNextLineCanBegin) {
+    const auto model = modelOf("ur5");
+    CartesianMoveParameters parameters;
+    parameters.target_position = motion::toFrame(model.kinematics().forward(model.home()));
+    parameters.next_position = parameters.target_position;
+    parameters.next_position->z += 0.1;
+    EXPECT_TRUE(planCartesianPtp(model, model.home(), parameters));
+    parameters.next_position->z += 10;
+    const auto plan = planCartesianPtp(model, model.home(), parameters);
+    ASSERT_FALSE(plan);
+    EXPECT_THAT(plan.error().error.message, ::testing::HasSubstr("the next line is possible from"));
 }
 
 TEST(MovePlanning, AddsARelativeJointTargetToTheStart) {

@@ -27,7 +27,7 @@ std::vector<Certificate> certificatesIn(const std::filesystem::path& folder);
 
 /// Content of the folders at one moment.
 struct TrustStore::Holdings {
-    explicit Holdings(const std::filesystem::path& folder);
+    explicit Holdings(const std::filesystem::path& where);
 
     /// Reports whether no file was added, renamed or removed since.
     bool isCurrent() const;

@@ -95,8 +95,7 @@ bool setSerial(X509* certificate) {
 
 bool setName(X509* certificate, const std::string& application_name) {
     X509_NAME* name = X509_get_subject_name(certificate);
-    const auto* text = reinterpret_cast<const unsigned char*>(  // NOLINT(*-reinterpret-cast): C API
-        application_name.c_str());
+    const auto* text = reinterpret_cast<const unsigned char*>(application_name.c_str());
     return X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_UTF8, text, -1, -1, 0) == 1 &&
            X509_set_issuer_name(certificate, name) == 1;
 }

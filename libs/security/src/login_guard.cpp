@@ -35,7 +35,7 @@ const std::string& hashOfNobody() {
 
 }  // namespace
 
-Result<LoginGuard> LoginGuard::open(std::filesystem::path file, const Clock& clock,
+Result<LoginGuard> LoginGuard::open(const std::filesystem::path& file, const Clock& clock,
                                     std::chrono::milliseconds patience) {
     const auto changed = changeOf(file);
     METIER_ASSIGN(auto users, UserTable::load(file));

@@ -13,8 +13,7 @@ namespace metier::security {
 namespace {
 
 const unsigned char* bytesOf(std::string_view text) noexcept {
-    return reinterpret_cast<const unsigned char*>(
-        text.data());  // NOLINT(*-reinterpret-cast): C API
+    return reinterpret_cast<const unsigned char*>(text.data());
 }
 
 bool isPem(std::string_view text) noexcept {

@@ -28,10 +28,9 @@ EVP_PKEY* keyOf(int bits) {
 }
 
 void setName(X509_NAME* name, const std::string& text) {
-    must(X509_NAME_add_entry_by_txt(
-             name, "CN", MBSTRING_UTF8,
-             reinterpret_cast<const unsigned char*>(text.c_str()),  // NOLINT(*-reinterpret-cast)
-             -1, -1, 0) == 1);
+    must(X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_UTF8,
+                                    reinterpret_cast<const unsigned char*>(text.c_str()), -1, -1,
+                                    0) == 1);
 }
 
 void extend(X509* certificate, X509* issuer, int kind, const std::string& value) {

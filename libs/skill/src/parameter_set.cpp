@@ -37,9 +37,9 @@ const std::shared_ptr<const ValueMap>& ParameterSet::snapshot() {
     return snapshot_;
 }
 
-void ParameterSet::write(const Field& field, Value value) {
+void ParameterSet::write(const Field& field, const Value& value) {
     snapshot_.reset();
-    values_.find(field.name)->second = isNull(value) ? field.default_value : std::move(value);
+    values_.find(field.name)->second = isNull(value) ? field.default_value : value;
     if (std::find(written_.begin(), written_.end(), &field) == written_.end()) {
         written_.push_back(&field);
     }

@@ -27,7 +27,7 @@ sockaddr_in loopback(std::uint16_t port) {
 
 /// The form that the system's functions take.
 sockaddr* generic(sockaddr_in& address) {
-    return reinterpret_cast<sockaddr*>(&address);  // NOLINT(*-reinterpret-cast)
+    return reinterpret_cast<sockaddr*>(&address);
 }
 
 bool becomes(int descriptor, short events, std::chrono::milliseconds longest) {

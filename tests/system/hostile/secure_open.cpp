@@ -18,7 +18,7 @@ constexpr std::size_t kBlock = 256;  // [byte] of a key of 2048 bit
 constexpr std::size_t kMostInBlock = 190;
 
 const unsigned char* octets(std::string_view bytes) {
-    return reinterpret_cast<const unsigned char*>(bytes.data());  // NOLINT(*-reinterpret-cast)
+    return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
 /// With RSA-OAEP and SHA-1, block by block; empty if the certificate is none.

@@ -22,9 +22,41 @@ class SourcesTest(unittest.TestCase):
 
 
 class LineFilterTest(unittest.TestCase):
-    def test_names_changed_sources_and_headers(self):
-        lines = {"libs/b.hpp": 1, "libs/a.cpp": 2, "README.md": 3}
-        self.assertEqual(json.loads(tidy_changed.line_filter(lines)), [{"name": "/libs/a.cpp"}, {"name": "/libs/b.hpp"}])
+    def test_names_changed_lines_of_sources_and_headers(self):
+        ranges = {"libs/b.hpp": [[1, 2]], "libs/a.cpp": [[3, 3], [9, 12]], "README.md": [[3, 4]]}
+        self.assertEqual(
+            json.loads(tidy_changed.line_filter(ranges)),
+            [{"name": "/libs/a.cpp", "lines": [[3, 3], [9, 12]]}, {"name": "/libs/b.hpp", "lines": [[1, 2]]}],
+        )
+
+
+class ChangedRangesTest(unittest.TestCase):
+    def test_takes_them_from_a_diff_without_context(self):
+        diff = """\
+diff --git a/libs/a.cpp b/libs/a.cpp
+--- a/libs/a.cpp
++++ b/libs/a.cpp
+@@ -2 +3 @@ int one() {
+-    return 2;
++    return 1;
+@@ -8,0 +9,4 @@
++a
++b
++c
++d
+@@ -20,2 +24,0 @@ removed
+-x
+-y
+diff --git a/libs/b.hpp b/libs/b.hpp
+--- /dev/null
++++ b/libs/b.hpp
+@@ -0,0 +1,2 @@
++x
++y
+"""
+        self.assertEqual(
+            tidy_changed.changed_ranges(diff), {"libs/a.cpp": [[3, 3], [9, 12]], "libs/b.hpp": [[1, 2]]}
+        )
 
 
 class CheckTest(unittest.TestCase):

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
+#include <iterator>
 #include <utility>
 
 namespace metier::virtual_controller {
@@ -21,10 +21,11 @@ Result<void> performOneOf(const std::vector<InjectionHelp>& known, const Injecti
     if (found != known.end() && found->perform) {
         return found->perform(injection.value);
     }
-    return fail(
-        Errc::not_found,
-        fmt::format("nothing called \"{}\" can be injected here; there are: {}", injection.name,
-                    fmt::join(known | std::views::transform(&InjectionHelp::name), ", ")));
+    std::vector<std::string> names;
+    std::ranges::transform(known, std::back_inserter(names), &InjectionHelp::name);
+    return fail(Errc::not_found,
+                fmt::format("nothing called \"{}\" can be injected here; there are: {}",
+                            injection.name, fmt::join(names, ", ")));
 }
 
 }  // namespace metier::virtual_controller

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <asio/post.hpp>
+#include <iterator>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <utility>
 
 #include "metier/base/text.hpp"
@@ -40,10 +40,11 @@ Result<std::unique_ptr<Host>> Host::start(HostOptions options,
                                           const std::vector<ControllerType>& types) {
     const auto type = std::ranges::find(types, options.type, &ControllerType::name);
     if (type == types.end()) {
-        return fail(
-            Errc::invalid_argument,
-            fmt::format("no virtual controller of type \"{}\"; there are: {}", options.type,
-                        fmt::join(types | std::views::transform(&ControllerType::name), ", ")));
+        std::vector<std::string_view> names;
+        std::ranges::transform(types, std::back_inserter(names), &ControllerType::name);
+        return fail(Errc::invalid_argument,
+                    fmt::format("no virtual controller of type \"{}\"; there are: {}", options.type,
+                                fmt::join(names, ", ")));
     }
     std::unique_ptr<Host> host(new Host());
     if (options.world_address.empty()) {

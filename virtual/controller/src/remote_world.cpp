@@ -15,7 +15,7 @@ constexpr std::size_t kLongestLine = 4096;
 
 }  // namespace
 
-RemoteWorld::RemoteWorld(asio::io_context& context, std::string name, std::string address,
+RemoteWorld::RemoteWorld(asio::io_context& context, std::string name, const std::string& address,
                          std::uint16_t port)
     : name_(std::move(name)),
       wire_(std::make_shared<Wire>(context, kLongestLine)),

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 #include "rosbridge.hpp"
@@ -13,7 +12,10 @@ constexpr std::int64_t kLongestQueue = 256;
 
 template <typename Wishes, typename Member>
 std::int64_t leastOf(const Wishes& wishes, Member member) {
-    return std::ranges::min(wishes | std::views::values | std::views::transform(member));
+    const auto least = std::min_element(
+        wishes.begin(), wishes.end(),
+        [&](const auto& a, const auto& b) { return a.second.*member < b.second.*member; });
+    return least->second.*member;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "web_socket.hpp"
 
+#include <array>
 #include <utility>
 
 #include "metier/base/text.hpp"
@@ -193,8 +194,8 @@ void WebSocket::onData(const Frame& taken, Received& received) {
 }
 
 void WebSocket::fail(std::uint16_t status, Received& received) {
-    const char code[]{static_cast<char>(status >> 8), static_cast<char>(status & 0xFFU)};
-    received.answer += frame(Opcode::close, {code, sizeof(code)});
+    const std::array code{static_cast<char>(status >> 8), static_cast<char>(status & 0xFFU)};
+    received.answer += frame(Opcode::close, {code.data(), code.size()});
     received.close = true;
     state_ = State::closed;
     incoming_.clear();

@@ -50,7 +50,7 @@ public:
     bool isOpen() const noexcept { return state_ == State::open; }
 
     /// One frame with a text message.
-    static std::string textFrame(std::string_view text);
+    static std::string textFrame(std::string_view message);
 
 private:
     enum class State : std::uint8_t { handshake, open, closed };
@@ -62,8 +62,8 @@ private:
 
     void takeHandshake(Received& received);
     bool takeFrame(Received& received);
-    void onControl(const Frame& frame, Received& received);
-    void onData(const Frame& frame, Received& received);
+    void onControl(const Frame& taken, Received& received);
+    void onData(const Frame& taken, Received& received);
     void fail(std::uint16_t status, Received& received);
 
     State state_ = State::handshake;

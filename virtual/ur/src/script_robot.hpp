@@ -59,9 +59,9 @@ public:
                                              const urscript::Pose& flange_from_tool) const override;
     bool withinLimits(const urscript::Target& target) const override;
     urscript::Pose targetWaypoint() const override;
-    Result<std::int32_t> integerRegister(urscript::RegisterBank bank, int index) const override;
-    Result<double> floatRegister(urscript::RegisterBank bank, int index) const override;
-    Result<bool> bitRegister(urscript::RegisterBank bank, int index) const override;
+    Result<std::int32_t> integerRegister(urscript::RegisterBank which, int index) const override;
+    Result<double> floatRegister(urscript::RegisterBank which, int index) const override;
+    Result<bool> bitRegister(urscript::RegisterBank which, int index) const override;
     Result<void> writeIntegerRegister(int index, std::int32_t value) override;
     Result<void> writeFloatRegister(int index, double value) override;
     Result<void> writeBitRegister(int index, bool value) override;

@@ -65,8 +65,9 @@ opcua::Answer<> call(client::SkillHandle& skill, const Command& command) {
     while (command.method == Method::reset && !called &&
            mayAskAgain(called.error(), std::chrono::steady_clock::now() - begin)) {
         // The server is not to be kept busy: it may be ready by itself meanwhile, or not.
-        static_cast<void>(
-            skill.awaitState(command.then, std::chrono::steady_clock::now() + kResetPause));
+        if (skill.awaitState(command.then, std::chrono::steady_clock::now() + kResetPause)) {
+            return {};
+        }
         called = skill.call(command.method);
     }
     return called;

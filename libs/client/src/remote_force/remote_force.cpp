@@ -1,10 +1,13 @@
 #include "metier/client/remote_force.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
 #include <set>
 #include <utility>
 
@@ -30,6 +33,9 @@ using namespace std::chrono_literals;
 constexpr auto kSampling = 5ms;
 constexpr std::uint32_t kQueue = 100;
 constexpr auto kSilence = 2s;
+constexpr auto kRetry = 500ms;
+// A force that is Bad for so long is subscribed to again: its server may have ended that.
+constexpr auto kLongestBad = 2s;
 
 template <typename Number>
 std::optional<Vector3> fromList(const opcua::Value& value) {
@@ -151,7 +157,6 @@ Result<std::unique_ptr<Client>> connectTo(const RemoteForceOptions& options,
     client.security = options.security;
     client.session_timeout = kSilence;
     client.publishing_interval = kSampling;
-    client.reconnect = opcua::ReconnectOptions{};
     auto connected = Client::connect(url, client);
     if (!connected) {
         return fail(connected.error().code, fmt::format("{}: {}", url, connected.error().message));
@@ -201,16 +206,16 @@ public:
         torque_ = torque ? std::optional(*torque) : std::nullopt;
     }
     void takePose(const DataValue& told, SteadyTime /*now*/) {
-        const bool known = pose_.has_value();
         pose_ = frameOf(told, "the pose of " + name_);
-        if (known && !pose_) {
-            report();
-        }
+        report();
     }
 
 private:
     void report() {
         const auto now = newest();
+        if (!now && now.error().code == Errc::resource_unavailable) {
+            return;  // of force and pose only one has come so far
+        }
         for (auto* const listener : std::set(listeners_)) {
             if (!listeners_.contains(listener)) {
                 continue;  // removed by one before it
@@ -232,7 +237,7 @@ private:
     std::set<ForceListener*> listeners_;
 };
 
-/// The subscriptions end before their clients.
+/// Subscriptions to the values; they end before their clients.
 struct RemoteForce::Connections {
     std::unique_ptr<Client> of_arm;  ///< nullptr: the axes are those of the base frame
     std::unique_ptr<Client> of_sensor;
@@ -247,33 +252,129 @@ struct RemoteForce::Connections {
         subscriptions.push_back(std::move(subscription));
         return {};
     }
+
+    /// Connects, finds the Variables and subscribes.
+    static Result<std::unique_ptr<Connections>> open(const RemoteForceOptions& options,
+                                                     State& state,
+                                                     const std::shared_ptr<Watch>& watch);
 };
+
+/// What ends the subscriptions, for the thread that makes them anew.
+class RemoteForce::Watch {
+public:
+    /// Any thread.
+    void noteLoss() {
+        const std::lock_guard lock(mutex_);
+        lost_ = true;
+        changed_.notify_all();
+    }
+    /// Any thread.
+    void noteValue(bool bad) {
+        const std::lock_guard lock(mutex_);
+        if (!bad) {
+            bad_since_.reset();
+        } else if (!bad_since_) {
+            bad_since_ = std::chrono::steady_clock::now();
+        }
+        changed_.notify_all();
+    }
+    /// Waits until the subscriptions must be made anew, or a stop.
+    void await(const std::stop_token& stop) {
+        std::unique_lock lock(mutex_);
+        while (!stop.stop_requested() && !lost_) {
+            if (!bad_since_) {
+                changed_.wait(lock, stop, [this] { return lost_ || bad_since_; });
+                continue;
+            }
+            const auto due = *bad_since_ + kLongestBad;
+            lost_ = !changed_.wait_until(lock, stop, due, [this] {
+                return lost_ || !bad_since_;
+            }) && !stop.stop_requested();
+        }
+    }
+    /// Waits for a while, or until a stop.
+    void pause(const std::stop_token& stop) {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, stop, kRetry, [] { return false; });
+        lost_ = false;
+        bad_since_.reset();
+    }
+
+private:
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    bool lost_ = false;
+    std::optional<SteadyTime> bad_since_;  // of the force
+};
+
+Result<std::unique_ptr<RemoteForce::Connections>> RemoteForce::Connections::open(
+    const RemoteForceOptions& options, State& state, const std::shared_ptr<Watch>& watch) {
+    auto connections = std::make_unique<Connections>();
+    METIER_ASSIGN(connections->of_sensor, connectTo(options, options.url));
+    auto& sensor = *connections->of_sensor;
+    sensor.onConnectionLost([watch](const opcua::Failure& /*why*/) { watch->noteLoss(); });
+    METIER_ASSIGN(const auto variables, variablesOf(sensor, options));
+    if (!options.arm_url.empty()) {
+        METIER_ASSIGN(connections->of_arm, connectTo(options, options.arm_url));
+        auto& arm = *connections->of_arm;
+        arm.onConnectionLost([watch](const opcua::Failure& /*why*/) { watch->noteLoss(); });
+        METIER_ASSIGN(const auto pose, poseOf(arm, options));
+        METIER_TRY(connections->follow(arm, pose, state.taker(&State::takePose)));
+    }
+    if (!variables.torque.isNull()) {
+        METIER_TRY(connections->follow(sensor, variables.torque, state.taker(&State::takeTorque)));
+    }
+    METIER_TRY(
+        connections->follow(sensor, variables.force,
+                            [watch, take = state.taker(&State::takeForce)](const DataValue& told) {
+                                watch->noteValue(told.status.isBad());
+                                take(told);
+                            }));
+    return connections;
+}
 
 Result<std::shared_ptr<RemoteForce>> RemoteForce::connect(
     RemoteForceOptions options, std::shared_ptr<skill::Executor> executor) {
     const auto name = fmt::format("{} of {}", options.force.empty() ? "FlangeForce" : options.force,
                                   options.server_name);
     auto state = std::make_shared<State>(name, !options.arm_url.empty(), std::move(executor));
-    auto connections = std::make_unique<Connections>();
-    METIER_ASSIGN(connections->of_sensor, connectTo(options, options.url));
-    METIER_ASSIGN(const auto variables, variablesOf(*connections->of_sensor, options));
-    if (!options.arm_url.empty()) {
-        METIER_ASSIGN(connections->of_arm, connectTo(options, options.arm_url));
-        METIER_ASSIGN(const auto pose, poseOf(*connections->of_arm, options));
-        METIER_TRY(connections->follow(*connections->of_arm, pose, state->taker(&State::takePose)));
-    }
-    auto& sensor = *connections->of_sensor;
-    if (!variables.torque.isNull()) {
-        METIER_TRY(connections->follow(sensor, variables.torque, state->taker(&State::takeTorque)));
-    }
-    METIER_TRY(connections->follow(sensor, variables.force, state->taker(&State::takeForce)));
-    return std::shared_ptr<RemoteForce>(new RemoteForce(std::move(state), std::move(connections)));
+    auto watch = std::make_shared<Watch>();
+    METIER_ASSIGN(auto connections, Connections::open(options, *state, watch));
+    return std::shared_ptr<RemoteForce>(new RemoteForce(std::move(options), std::move(state),
+                                                        std::move(watch), std::move(connections)));
 }
 
-RemoteForce::RemoteForce(std::shared_ptr<State> state, std::unique_ptr<Connections> connections)
-    : state_(std::move(state)), connections_(std::move(connections)) {}
+RemoteForce::RemoteForce(RemoteForceOptions options, std::shared_ptr<State> state,
+                         std::shared_ptr<Watch> watch, std::unique_ptr<Connections> connections)
+    : options_(std::move(options)),
+      state_(std::move(state)),
+      watch_(std::move(watch)),
+      connections_(std::move(connections)),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-RemoteForce::~RemoteForce() = default;
+RemoteForce::~RemoteForce() {
+    thread_.request_stop();
+    thread_ = {};
+}
+
+void RemoteForce::run(const std::stop_token& stop) {
+    for (;;) {
+        watch_->await(stop);
+        connections_.reset();
+        watch_->pause(stop);
+        if (stop.stop_requested()) {
+            return;
+        }
+        auto again = Connections::open(options_, *state_, watch_);
+        if (again) {
+            connections_ = std::move(*again);
+            spdlog::warn("{}: connected again", state_->name());
+        } else {
+            spdlog::debug("{}: {}", state_->name(), again.error().message);
+            watch_->noteLoss();
+        }
+    }
+}
 
 const std::string& RemoteForce::name() const {
     return state_->name();

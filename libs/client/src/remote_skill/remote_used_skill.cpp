@@ -463,7 +463,14 @@ void RemoteUsedSkill::halt() {
         halt_wanted_ = true;
         return;
     }
-    static_cast<void>(command(Method::halt));  // if the server is lost, lost() reports it
+    const auto sent = command(Method::halt);
+    if (!sent && skill_) {  // it has no Halt; if the server is lost, lost() reports it
+        link_->post([id = execution_, error = sent.error()](RemoteUsedSkill& used) {
+            if (used.listener_ != nullptr && !id.empty() && used.execution_ == id) {
+                used.listener_->onRefused(Method::halt, error);
+            }
+        });
+    }
 }
 
 /// Each is sent, also while the answer to another is awaited: that may be a refusal.

@@ -17,9 +17,11 @@ using namespace std::chrono_literals;
 using skill::Reason;
 using skill::Vector3;
 
-// As a composed skill waits for used skills to come to rest.
-constexpr auto kLongestReset = 6s;
-constexpr auto kResetPause = 100ms;
+// Shorter than a composed skill waits for used skills to come to rest.
+constexpr auto kLongestReset = 4s;
+// As a composed skill waits for them.
+constexpr auto kLongestHalt = 6s;
+constexpr auto kPause = 100ms;
 
 const std::string kMaxForce = "MaxForce";
 const std::string kHaltOnForce = "HaltOnForce";
@@ -74,8 +76,12 @@ Vector3 turned(const Vector3& vector, const Frame& sensor) {
     return {in_base.x(), in_base.y(), in_base.z()};
 }
 
-Vector3 inBase(const MeasuredForce& measured) {
-    return turned(measured.force, measured.pose);
+/// The force in the base frame.
+/// Errors: device_fault, if it is not finite.
+Result<Vector3> inBase(const MeasuredForce& measured, const std::string& name) {
+    const auto force = turned(measured.force, measured.pose);
+    return isFinite(force) ? Result<Vector3>(force)
+                           : fail(Errc::device_fault, name + " is not finite");
 }
 
 Vector3 largest(const Vector3& a, const Vector3& b) {
@@ -140,7 +146,7 @@ public:
     const skill::SkillDescription& description() const override { return description_; }
     Result<void> available() const override {
         METIER_TRY(used().available());
-        METIER_TRY(source_->newest());
+        METIER_TRY(forceNow());
         return {};
     }
     /// What it halted itself may be reset.
@@ -172,9 +178,14 @@ private:
     void onReset(const Result<void>& outcome) override;
     void onEnd(UsedSkillEnd end) override;
 
-    /// Notes a force. \return whether it is over a limit
-    bool note(const MeasuredForce& measured);
+    /// Errors: no force is known, or it is not finite.
+    Result<Vector3> forceNow() const;
+    /// Notes a force of the base frame. \return whether it is over a limit
+    bool note(const Vector3& force, const MeasuredForce& measured);
     void haltMove();
+    void haltTimePassed();
+    /// Whether an end is that of our own Halt, and not a fault or another client's Halt meanwhile.
+    bool isOurHalt(const UsedSkillEnd& end) const;
     void askReset();
     void resetRefused(const Error& error);
     /// Reports the end of the execution.
@@ -200,8 +211,10 @@ private:
     SteadyTime last_within_{};
     std::optional<Vector3> exceeded_;
     std::optional<Error> lost_;
-    bool halt_refused_ = false;
     bool halted_by_listener_ = false;
+    bool halted_by_others_ = false;
+    std::string refusal_;  // of the last Halt
+    skill::Timer halt_limit_;
     std::optional<SteadyTime> braking_since_;
     std::optional<SteadyTime> stood_at_;
     UsedSkillEnd end_;  // to be reported after the Reset
@@ -214,14 +227,27 @@ void ForceLimitedSkill::check(const skill::CheckRequest& request, skill::CheckDo
     auto refusal = taken ? std::nullopt : std::optional(taken.error());
     used().check(of_move, [refusal = std::move(refusal),
                            done = std::move(done)](Result<skill::CheckReport> report) {
-        done(refusal ? fail(*refusal) : std::move(report));
+        if (refusal) {
+            report = skill::CheckReport{.possible = false,
+                                        .reason = refusal->message,
+                                        .code = std::string(toString(refusal->code)),
+                                        .first_failing_fraction = 0.0};
+        }
+        done(std::move(report));
     });
+}
+
+Result<Vector3> ForceLimitedSkill::forceNow() const {
+    METIER_ASSIGN(const auto measured, source_->newest());
+    return inBase(measured, source_->name());
 }
 
 void ForceLimitedSkill::begin(skill::StartRequest request, UsedSkillListener& listener) {
     listener_ = &listener;
     const auto taken = takeFrom(request.parameters);
-    const auto force = source_->newest();
+    const auto measured = source_->newest();
+    const auto force = measured.and_then(
+        [this](const MeasuredForce& now) { return inBase(now, source_->name()); });
     if (!taken || !force) {
         reportSoon({UsedSkillEnd::Kind::refused,
                     {},
@@ -231,13 +257,14 @@ void ForceLimitedSkill::begin(skill::StartRequest request, UsedSkillListener& li
     }
     parameters_ = *taken;
     forces_max_ = {};
-    last_within_ = force->received;
+    last_within_ = measured->received;
     exceeded_.reset();
     lost_.reset();
     braking_since_.reset();
     stood_at_.reset();
-    halt_refused_ = halted_by_listener_ = false;
-    if (note(*force)) {
+    refusal_.clear();
+    halted_by_listener_ = halted_by_others_ = false;
+    if (note(*force, *measured)) {
         reportSoon(endByForce({}));
         return;
     }
@@ -259,21 +286,22 @@ void ForceLimitedSkill::halt() {
 void ForceLimitedSkill::release() {
     stage_ = Stage::idle;
     later_.cancel();
+    halt_limit_.cancel();
     source_->remove(*this);
     WrappedUsedSkill::release();
 }
 
-bool ForceLimitedSkill::note(const MeasuredForce& measured) {
-    contact_force_ = inBase(measured);
+bool ForceLimitedSkill::note(const Vector3& force, const MeasuredForce& measured) {
+    contact_force_ = force;
     contact_torque_.reset();
     if (measured.torque) {
         contact_torque_ = turned(*measured.torque, measured.pose);
     }
-    forces_max_ = largest(forces_max_, contact_force_);
-    if (!exceeds(contact_force_, parameters_.limits)) {
+    forces_max_ = largest(forces_max_, force);
+    if (!exceeds(force, parameters_.limits)) {
         return false;
     }
-    exceeded_ = contact_force_;
+    exceeded_ = force;
     return true;
 }
 
@@ -281,14 +309,12 @@ void ForceLimitedSkill::onForce(const MeasuredForce& measured) {
     if (stage_ != Stage::moves) {
         return;
     }
-    if (exceeded_ || lost_) {
-        forces_max_ = largest(forces_max_, inBase(measured));  // it still brakes
-        if (halt_refused_) {
-            haltMove();
-        }
-    } else if (!isFinite(measured.force)) {
-        onForceLost({Errc::device_fault, source_->name() + " is not finite"});
-    } else if (note(measured)) {
+    const auto force = inBase(measured, source_->name());
+    if (!force) {
+        onForceLost(force.error());
+    } else if (exceeded_ || lost_ || halted_by_others_) {
+        forces_max_ = largest(forces_max_, *force);  // it still brakes
+    } else if (note(*force, measured)) {
         haltMove();
     } else {
         last_within_ = measured.received;
@@ -296,48 +322,73 @@ void ForceLimitedSkill::onForce(const MeasuredForce& measured) {
 }
 
 void ForceLimitedSkill::onForceLost(const Error& why) {
-    if (stage_ == Stage::moves && !exceeded_ && !lost_) {
+    if (stage_ == Stage::moves && !exceeded_ && !lost_ && !halted_by_others_) {
         lost_ = why;
         haltMove();
     }
 }
 
 void ForceLimitedSkill::haltMove() {
-    halt_refused_ = false;
+    halt_limit_ = executor_->after(kLongestHalt, [this] { haltTimePassed(); });
     used().halt();
 }
 
+void ForceLimitedSkill::haltTimePassed() {
+    source_->remove(*this);
+    used().release();
+    report({UsedSkillEnd::Kind::halted,
+            {},
+            Reason::error,
+            fmt::format("did not end within {} s after Halt{}", kLongestHalt.count(),
+                        refusal_.empty() ? std::string() : fmt::format(" ({})", refusal_))});
+}
+
 void ForceLimitedSkill::onStopping(const UsedSkillStop& stop) {
-    if (stop.to == skill::State::halted && (exceeded_ || lost_)) {
+    const bool to_halted = stop.to == skill::State::halted;
+    if (to_halted && (exceeded_ || lost_)) {
         braking_since_ = clock_.now();
-    } else {
-        WrappedUsedSkill::onStopping(stop);
+        return;
     }
+    halted_by_others_ = halted_by_others_ || to_halted;
+    WrappedUsedSkill::onStopping(stop);
 }
 
 void ForceLimitedSkill::onRefused(skill::Method method, const Error& error) {
-    halt_refused_ = halt_refused_ || method == skill::Method::halt;
+    if (method == skill::Method::halt && (exceeded_ || lost_)) {
+        refusal_ = error.message;
+        later_ = executor_->after(kPause, [this] {
+            if (stage_ == Stage::moves) {
+                used().halt();
+            }
+        });
+    }
     WrappedUsedSkill::onRefused(method, error);
+}
+
+/// A server of another maker gives no reason.
+bool ForceLimitedSkill::isOurHalt(const UsedSkillEnd& end) const {
+    const bool unnamed = end.reason == Reason::none || end.reason == Reason::error;
+    return (exceeded_ || lost_) && !halted_by_listener_ &&
+           (end.reason == Reason::by_client || (unnamed && !used().lacks().empty()));
 }
 
 void ForceLimitedSkill::onEnd(UsedSkillEnd end) {
     source_->remove(*this);
+    halt_limit_.cancel();
+    later_.cancel();
     stood_at_ = clock_.now();
-    const bool halted = end.kind == UsedSkillEnd::Kind::halted;
     const bool finished = end.kind == UsedSkillEnd::Kind::finished;
-    halted_here_ = halted && (exceeded_ || lost_);
-    if (halted_by_listener_ || !(halted || finished)) {
-        report(std::move(end));
-    } else if (exceeded_) {
-        end_ = endByForce(std::move(end.result));
-        if (halted && end_.kind == UsedSkillEnd::Kind::finished) {
-            stage_ = Stage::is_reset;
-            reset_limit_ = clock_.now() + kLongestReset;
-            askReset();
-        } else {
-            report(std::move(end_));
-        }
-    } else if (lost_) {
+    const bool ours = end.kind == UsedSkillEnd::Kind::halted && isOurHalt(end);
+    // Our Halt may still reach a move that has reached its target meanwhile.
+    halted_here_ = ours || (finished && (exceeded_ || lost_));
+    if (ours && exceeded_ && !parameters_.halt_on_force) {
+        end_ = endByForce({});
+        stage_ = Stage::is_reset;
+        reset_limit_ = clock_.now() + kLongestReset;
+        askReset();
+    } else if ((ours || finished) && exceeded_) {
+        report(endByForce(std::move(end.result)));
+    } else if (ours) {
         report({UsedSkillEnd::Kind::halted,
                 {},
                 Reason::device_lost,
@@ -373,7 +424,7 @@ void ForceLimitedSkill::resetRefused(const Error& error) {
     const bool again = (error.code == Errc::timeout || error.code == Errc::resource_unavailable) &&
                        clock_.now() < reset_limit_;
     if (again) {
-        later_ = executor_->after(kResetPause, [this] { askReset(); });
+        later_ = executor_->after(kPause, [this] { askReset(); });
     } else {
         reportSoon(std::move(end_));
     }

@@ -64,7 +64,7 @@ TEST_F(IiwaDriver, TalksInThePrecisionOfItsSettings) {
         const auto device =
             open({{"port", 0.0}, {"precision", precision}, {"answer_timeout_ms", 5000.0}});
         ASSERT_TRUE(device) << device.error().message;
-        const auto& arm = static_cast<const IiwaArm&>(*device->arm);
+        const auto& arm = dynamic_cast<const IiwaArm&>(*device->arm);
         const ScriptedCabinet cabinet(arm.port(), {.double_precision = twice});
         EXPECT_TRUE(until([&] { return arm.state().safety == device::SafetyState::normal; }))
             << precision;

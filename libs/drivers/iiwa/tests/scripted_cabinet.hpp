@@ -69,7 +69,7 @@ public:
     /// Cuts the connection.
     void die();
 
-    static constexpr double kHome[7] = {0.0, 0.5, 0.0, -1.5, 0.0, 1.0, 0.0};
+    static constexpr std::array kHome{0.0, 0.5, 0.0, -1.5, 0.0, 1.0, 0.0};
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -99,7 +99,7 @@ private:
     double way_ = 0.0;
     bool active_ = false;
     bool condition_met_ = false;
-    std::array<double, 3> thresholds_;
+    std::array<double, 3> thresholds_{};
     int motion_type_ = 21;
     int interface_ = 31;
     int last_error_ = -10;

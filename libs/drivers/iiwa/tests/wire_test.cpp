@@ -127,9 +127,11 @@ TEST(IiwaWire, AForceThatIsNotWatchedIsNaNInBothPlaces) {
 /// A 0.5, B 1, C -0.5; force 1 2 -2; torque 0.5 ... ; error -10, condition met, ready, not active.
 std::string goldenState() {
     std::string text = "3f800000";
-    for (int i = 0; i < 7; ++i) text += "3f000000";
-    for (int i = 0; i < 7; ++i) text += "3e800000";
-    for (int i = 0; i < 7; ++i) text += "3f800000";
+    for (const auto* value : {"3f000000", "3e800000", "3f800000"}) {
+        for (int axis = 0; axis < 7; ++axis) {
+            text += value;
+        }
+    }
     text +=
         "43fa0000"
         "c37a0000"

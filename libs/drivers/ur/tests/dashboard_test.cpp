@@ -58,7 +58,7 @@ TEST(DashboardFlag, IsTrueOrFalse) {
 /// A server with a script: sends `greeting`, then `reply` to whatever comes.
 class DashboardTest : public testing::Test {
 protected:
-    void serve(std::string greeting, std::string reply) {
+    void serve(const std::string& greeting, const std::string& reply) {
         server_ = std::async(std::launch::async, [this, greeting, reply] {
             auto link = listener_.accept(soon());
             std::string heard;

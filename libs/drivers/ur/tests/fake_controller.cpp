@@ -322,8 +322,8 @@ std::vector<std::byte> FakeController::setUp(const std::string& names, std::size
     std::string types;
     bool valid = true;
     for (const auto& name : list) {
-        auto type = knobs_.unknown.count(name) != 0 ? "NOT_FOUND" : typeOf(name);
-        type = knobs_.in_use.count(name) != 0 ? "IN_USE" : type;
+        auto type = knobs_.unknown.contains(name) ? "NOT_FOUND" : typeOf(name);
+        type = knobs_.in_use.contains(name) ? "IN_USE" : type;
         valid = valid && type != "NOT_FOUND" && type != "IN_USE";
         types += (types.empty() ? "" : ",") + type;
     }

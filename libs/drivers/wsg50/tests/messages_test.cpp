@@ -122,7 +122,7 @@ TEST(Messages, RefusesLimitsThatMakeNoSense) {
 TEST(Messages, RefusesLimitsWithoutRoomBetweenThem) {
     struct Case {
         std::initializer_list<float> values;
-        const char* problem;
+        const char* problem = nullptr;
     };
     for (const auto& [values, problem] :
          {Case{{-110, 5, 420, 100, 5000, 5, 80, 120}, "width from 0 to -0.11"},

@@ -50,7 +50,6 @@ void setDiscoveryEndpoint(const std::string& url, UA_ClientConfig& config) {
 
 ClientComplaints::ClientComplaints() noexcept : logger_{&log, this, nullptr} {}
 
-// NOLINTNEXTLINE(readability-function-size): the stack gives the parameters
 void ClientComplaints::log(void* context, UA_LogLevel level, UA_LogCategory /*category*/,
                            const char* format, va_list arguments) {
     if (level < UA_LOGLEVEL_WARNING) {
@@ -62,7 +61,7 @@ void ClientComplaints::log(void* context, UA_LogLevel level, UA_LogCategory /*ca
 }
 
 Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ConnectionKind kind,
-                                         ClientPlugins plugins) {
+                                         const ClientPlugins& plugins) {
     UA_ClientConfig config{};
     config.eventLoop = plugins.loop;
     config.externalEventLoop = false;

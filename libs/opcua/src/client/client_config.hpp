@@ -47,6 +47,6 @@ struct ClientPlugins {
 /// UA_Client_newWithConfig().
 /// Errors: invalid_argument (the own certificate).
 Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ConnectionKind kind,
-                                         ClientPlugins plugins);
+                                         const ClientPlugins& plugins);
 
 }  // namespace metier::opcua

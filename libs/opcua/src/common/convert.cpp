@@ -21,9 +21,7 @@ UA_Byte* stackPointer(const void* data) noexcept {
 }  // namespace
 
 std::string_view bytesOf(const UA_ByteString& bytes) noexcept {
-    return {
-        reinterpret_cast<const char*>(bytes.data),  // NOLINT(*-reinterpret-cast): the same bytes
-        bytes.length};
+    return {reinterpret_cast<const char*>(bytes.data), bytes.length};
 }
 
 UA_String viewOf(std::string_view text) noexcept {
@@ -74,7 +72,7 @@ std::string textFrom(const UA_String& text) {
     if (text.length == 0) {
         return {};
     }
-    return {reinterpret_cast<const char*>(text.data), text.length};  // NOLINT(*-reinterpret-cast)
+    return {reinterpret_cast<const char*>(text.data), text.length};
 }
 
 UtcTime timeFrom(UA_DateTime time) noexcept {

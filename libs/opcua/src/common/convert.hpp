@@ -62,7 +62,6 @@ template <typename Native>
 Native* decodedAs(const UA_ExtensionObject& object, const UA_DataType& type) noexcept {
     const bool has_content = object.encoding == UA_EXTENSIONOBJECT_DECODED ||
                              object.encoding == UA_EXTENSIONOBJECT_DECODED_NODELETE;
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-union-access): the stack's, checked above
     const auto& decoded = object.content.decoded;
     return has_content && decoded.type == &type ? static_cast<Native*>(decoded.data) : nullptr;
 }

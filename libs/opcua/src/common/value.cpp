@@ -163,13 +163,11 @@ std::string jsonOf(const void* data, const UA_DataType& type) {
 static_assert(sizeof(UA_Variant) == 48, "Value::kNativeSize must follow the stack");
 
 UA_Variant& ValueAccess::native(Value& value) noexcept {
-    return *std::launder(
-        reinterpret_cast<UA_Variant*>(value.native_));  // NOLINT(*-reinterpret-cast)
+    return *std::launder(reinterpret_cast<UA_Variant*>(value.native_.data()));
 }
 
 const UA_Variant& ValueAccess::native(const Value& value) noexcept {
-    return *std::launder(
-        reinterpret_cast<const UA_Variant*>(value.native_));  // NOLINT(*-reinterpret-cast)
+    return *std::launder(reinterpret_cast<const UA_Variant*>(value.native_.data()));
 }
 
 Value ValueAccess::copyOf(const UA_Variant& variant) {
@@ -184,8 +182,8 @@ Value ValueAccess::take(UA_Variant& variant) noexcept {
     return value;
 }
 
-Value::Value() noexcept {
-    ::new (static_cast<void*>(native_)) UA_Variant{};
+Value::Value() noexcept {  // NOLINT(cppcoreguidelines-pro-type-member-init): made in place
+    ::new (static_cast<void*>(native_.data())) UA_Variant{};
 }
 
 Value::~Value() {
@@ -332,11 +330,13 @@ bool Value::equals(const Value& other) const noexcept {
                     &UA_TYPES[UA_TYPES_VARIANT]) == UA_ORDER_EQ;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type.
 #define METIER_INSTANTIATE(T)                                        \
     template Value Value::of<T>(const T&);                           \
     template Result<T> Value::as<T>() const;                         \
     template Value Value::of<std::vector<T>>(const std::vector<T>&); \
     template Result<std::vector<T>> Value::as<std::vector<T>>() const;
+// NOLINTEND(bugprone-macro-parentheses)
 
 METIER_INSTANTIATE(bool)
 METIER_INSTANTIATE(std::int8_t)

@@ -83,7 +83,6 @@ private:
     }
 
     static bool isLoopback(const AvahiAddress& address) {
-        // NOLINTNEXTLINE(cppcoreguidelines-pro-type-union-access): Avahi's type
         return ntohl(address.data.ipv4.address) >> 24U == kLoopbackNet;
     }
 

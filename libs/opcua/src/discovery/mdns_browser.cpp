@@ -58,7 +58,6 @@ public:
     }
 
 private:
-    // NOLINTNEXTLINE(readability-function-size): Avahi gives the parameters
     static void browsed(AvahiServiceBrowser* /*browser*/, AvahiIfIndex interface,
                         AvahiProtocol protocol, AvahiBrowserEvent event, const char* name,
                         const char* type, const char* domain, AvahiLookupResultFlags /*flags*/,
@@ -74,7 +73,6 @@ private:
         }
     }
 
-    // NOLINTNEXTLINE(readability-function-size): Avahi gives the parameters
     static void resolved(AvahiServiceResolver* resolver, AvahiIfIndex /*interface*/,
                          AvahiProtocol /*protocol*/, AvahiResolverEvent event, const char* name,
                          const char* /*type*/, const char* /*domain*/, const char* /*host*/,

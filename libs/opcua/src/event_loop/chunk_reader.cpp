@@ -31,7 +31,7 @@ std::size_t ChunkReader::bodySize() const {
 }
 
 std::string_view ChunkReader::type() const {
-    return {reinterpret_cast<const char*>(header_.data()), 4};  // NOLINT(*-reinterpret-cast)
+    return {reinterpret_cast<const char*>(header_.data()), 4};
 }
 
 }  // namespace metier::opcua

@@ -42,7 +42,6 @@ UA_StatusCode under(Loop& loop, Work work) noexcept {
     });
 }
 
-// NOLINTNEXTLINE(readability-function-size): the interface's parameters
 UA_StatusCode addCyclic(UA_EventLoop* handle, UA_Callback callback, void* application, void* data,
                         UA_Double interval_ms, UA_DateTime* base, UA_TimerPolicy policy,
                         UA_UInt64* id) noexcept {
@@ -59,7 +58,6 @@ UA_StatusCode addCyclic(UA_EventLoop* handle, UA_Callback callback, void* applic
     });
 }
 
-// NOLINTNEXTLINE(readability-function-size): the interface's parameters
 UA_StatusCode modifyCyclic(UA_EventLoop* handle, UA_UInt64 id, UA_Double interval_ms,
                            UA_DateTime* base, UA_TimerPolicy policy) noexcept {
     const auto interval = toInterval(interval_ms);
@@ -73,7 +71,6 @@ UA_StatusCode modifyCyclic(UA_EventLoop* handle, UA_UInt64 id, UA_Double interva
     });
 }
 
-// NOLINTNEXTLINE(readability-function-size): the interface's parameters
 UA_StatusCode addTimed(UA_EventLoop* handle, UA_Callback callback, void* application, void* data,
                        UA_DateTime date, UA_UInt64* id) noexcept {
     if (callback == nullptr) {
@@ -156,7 +153,6 @@ void fillEventSource(UA_EventSource& source, UA_EventLoop& handle) {
     source.free = [](UA_EventSource*) noexcept -> UA_StatusCode { return UA_STATUSCODE_GOOD; };
 }
 
-// NOLINTNEXTLINE(readability-function-size): the interface's parameters
 UA_StatusCode open(UA_ConnectionManager* manager, const UA_KeyValueMap* parameters,
                    void* application, void* context,
                    UA_ConnectionManager_connectionCallback callback) noexcept {

@@ -48,10 +48,9 @@ Result<> TcpConnectionManager::listen(const TcpParameters& parameters,
 
 void TcpConnectionManager::announce(OpenAcceptor open, const Application& application) {
     const auto id = ++last_id_;
-    auto& listener = *listeners_
-                          .emplace(id, std::make_unique<Listener>(id, std::move(open.acceptor),
-                                                                  application, open.address))
-                          .first->second;
+    auto made = std::make_unique<Listener>(
+        Listener{id, std::move(open.acceptor), application, open.address});
+    auto& listener = *listeners_.emplace(id, std::move(made)).first->second;
     asio::error_code ignored;  // without the machine's name its address is announced empty
     const auto host =
         open.address.address.empty() ? asio::ip::host_name(ignored) : open.address.address;

@@ -59,9 +59,7 @@ private:
                 marks_[each] = Mark::failed;
             }
         }
-        for (auto each = chain.rbegin(); each != chain.rend(); ++each) {
-            add(*each);
-        }
+        std::for_each(chain.rbegin(), chain.rend(), [this](std::size_t each) { add(each); });
     }
 
     /// Nothing more is said of a node below one that could not be added.

@@ -349,7 +349,6 @@ Read XmlValues::extensionObject(const pugi::xml_node& element, UA_ExtensionObjec
     const bool binary = localName(inner.body) == "ByteString";
     target.encoding =
         binary ? UA_EXTENSIONOBJECT_ENCODED_BYTESTRING : UA_EXTENSIONOBJECT_ENCODED_XML;
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-union-access): the stack's, set above
     auto& encoded = target.content.encoded;
     toNative(inner.id, encoded.typeId);
     if (binary) {
@@ -402,16 +401,15 @@ Read XmlValues::member(const pugi::xml_node& element, const UA_DataTypeMember& m
     const auto& type = *member.memberType;
     if (member.isArray) {
         // A length, and a pointer to the elements: the stack's layout of an array.
-        auto& size = *reinterpret_cast<std::size_t*>(target);  // NOLINT(*-reinterpret-cast)
-        auto& array = *reinterpret_cast<void**>(               // NOLINT(*-reinterpret-cast)
-            target + sizeof(std::size_t));
+        auto& size = *reinterpret_cast<std::size_t*>(target);
+        auto& array = *reinterpret_cast<void**>(target + sizeof(std::size_t));
         return elements(element, type, array, size);
     }
     if (!member.isOptional) {
         UA_clear(target, &type);  // a field that is there twice
         return decode(element, type, target);
     }
-    auto& pointer = *reinterpret_cast<void**>(target);  // NOLINT(*-reinterpret-cast)
+    auto& pointer = *reinterpret_cast<void**>(target);
     if (pointer != nullptr) {
         return misread(element, "the field is set twice");
     }

@@ -24,15 +24,15 @@ struct Lineage {
 UA_StatusCode refer(UA_Node& node, const std::vector<NodeId>& above) {
     constexpr UA_UInt32 kAnotherServer = 1;
     constexpr UA_UInt32 kFoundByNoName = 0;
-    auto code = UA_STATUSCODE_GOOD;
     for (const auto& type : above) {
         const UA_ExpandedNodeId target{viewOf(type), UA_STRING_NULL, kAnotherServer};
-        code = code != UA_STATUSCODE_GOOD
-                   ? code
-                   : UA_Node_addReference(&node, UA_REFERENCETYPEINDEX_HASSUBTYPE, true, &target,
-                                          kFoundByNoName);
+        const auto code = UA_Node_addReference(&node, UA_REFERENCETYPEINDEX_HASSUBTYPE, true,
+                                               &target, kFoundByNoName);
+        if (code != UA_STATUSCODE_GOOD) {
+            return code;
+        }
     }
-    return code;
+    return UA_STATUSCODE_GOOD;
 }
 
 UA_StatusCode refer(UA_Nodestore& store, const Lineage& lineage) {

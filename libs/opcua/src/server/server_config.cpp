@@ -59,9 +59,9 @@ void setAddresses(const ServerOptions& options, UA_ServerConfig& config) {
     for (const auto& address : options.bind_addresses) {
         const std::string url = endpointUrlOf(address, options.port);
         const UA_String view = viewOf(url);
-        checkAllocated(UA_Array_appendCopy(
-            reinterpret_cast<void**>(&config.serverUrls),  // NOLINT(*-reinterpret-cast)
-            &config.serverUrlsSize, &view, &UA_TYPES[UA_TYPES_STRING]));
+        checkAllocated(UA_Array_appendCopy(reinterpret_cast<void**>(&config.serverUrls),
+                                           &config.serverUrlsSize, &view,
+                                           &UA_TYPES[UA_TYPES_STRING]));
     }
     config.tcpReuseAddr = false;  // two servers on one port would share its clients
 }

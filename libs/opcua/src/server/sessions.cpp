@@ -24,9 +24,9 @@ void addTokenPolicy(UA_AccessControl& control, UA_UserTokenType type, std::strin
     UA_UserTokenPolicy policy{};
     policy.tokenType = type;
     policy.policyId = viewOf(id);
-    checkAllocated(UA_Array_appendCopy(
-        reinterpret_cast<void**>(&control.userTokenPolicies),  // NOLINT(*-reinterpret-cast)
-        &control.userTokenPoliciesSize, &policy, &UA_TYPES[UA_TYPES_USERTOKENPOLICY]));
+    checkAllocated(UA_Array_appendCopy(reinterpret_cast<void**>(&control.userTokenPolicies),
+                                       &control.userTokenPoliciesSize, &policy,
+                                       &UA_TYPES[UA_TYPES_USERTOKENPOLICY]));
 }
 
 void closeInStack(UA_Server* server, const NodeId& session) {

@@ -9,7 +9,6 @@
 namespace metier::opcua {
 
 struct StackMethods::Callbacks {
-    // NOLINTNEXTLINE(readability-function-size): the stack gives the parameters
     static UA_StatusCode call(UA_Server* server, const UA_NodeId* session_id, void* session_context,
                               const UA_NodeId* method_id, void* method_context,
                               const UA_NodeId* object_id, void* object_context,

@@ -25,7 +25,7 @@ public:
 private:
     struct Unused {
         NodeId id;
-        std::uintptr_t connection;
+        std::uintptr_t connection = 0;
     };
     std::vector<Unused> sessions_;  // oldest first
 };

@@ -76,6 +76,15 @@ Field relativeField(Relative last) {
             .place = Place::options};
 }
 
+Field nextPositionField() {
+    return {.name = "NextPosition",
+            .description =
+                "Pose in the base frame to which the tool frame goes next on a line: the arm "
+                "arrives in a joint position from which that is possible",
+            .unit = skill::kMetre,
+            .place = Place::options};
+}
+
 Field blendRadiusField() {
     return {.name = "BlendRadius",
             .description = "Radius of the blend into the next move; only 0 so far",
@@ -236,6 +245,9 @@ skill::FieldList<CartesianMoveParameters> cartesianMoveFields(const motion::Robo
                                                               MoveKind kind) {
     skill::FieldList<CartesianMoveParameters> fields;
     addCartesianFields(fields, model, kind);
+    if (kind == MoveKind::ptp) {
+        fields.add(&CartesianMoveParameters::next_position, nextPositionField());
+    }
     return fields;
 }
 

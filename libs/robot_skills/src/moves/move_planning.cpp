@@ -135,6 +135,9 @@ Planned<Trajectory> planCartesianPtp(const RobotModel& model, const JointVector&
     request.target = motion::toPose(parameters.target_position);
     request.reference = reference(parameters);
     request.axis_bounds = axisBounds(parameters.axis_bounds);
+    if (parameters.next_position) {
+        request.next_line = motion::toPose(*parameters.next_position);
+    }
     return lasting(motion::Planner(model).ptp(request), parameters);
 }
 

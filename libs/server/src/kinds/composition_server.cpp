@@ -158,7 +158,8 @@ private:
         METIER_ASSIGN(auto used, remote.use(skill, origin_));
         auto recorded = server_.host_->recorded(
             std::move(used), {remote.name(), skill.controllerName(), skill.name});
-        used_skills_.emplace(use.alias, server_.forces_.limit(use, std::move(recorded)));
+        METIER_ASSIGN(auto limited, server_.forces_.limit(use, std::move(recorded)));
+        used_skills_.emplace(use.alias, std::move(limited));
         remote_.push_back(
             {use.alias, remote.url(), skill.name, skill.type_name, skill.controllerName()});
         return {};

@@ -49,13 +49,18 @@ Result<void> Forces::check(const composition::Use& use) const {
                 fmt::format("{} has no [[server.force]] \"{}\"", name_, use.force));
 }
 
-std::unique_ptr<composition::UsedSkill> Forces::limit(
+Result<std::unique_ptr<composition::UsedSkill>> Forces::limit(
     const composition::Use& use, std::unique_ptr<composition::UsedSkill> used) const {
     const auto source = sources_.find(use.force);
-    return source == sources_.end()
-               ? std::move(used)
-               : composition::limitForce(std::move(used), source->second, host_.skills().executor(),
-                                         host_.clock());
+    if (source == sources_.end()) {
+        return used;
+    }
+    if (skill::findField(used->description().parameters, "MaxForce") != nullptr) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{} ends at a force by itself", used->name()));
+    }
+    return composition::limitForce(std::move(used), source->second, host_.skills().executor(),
+                                   host_.clock());
 }
 
 }  // namespace metier::server

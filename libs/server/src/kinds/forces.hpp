@@ -28,7 +28,8 @@ public:
     /// Errors: invalid_argument: the component has no force of that name.
     Result<void> check(const composition::Use& use) const;
     /// The used skill, which also ends at the force of `use`, if that names one.
-    std::unique_ptr<composition::UsedSkill> limit(
+    /// Errors: invalid_argument: the skill has a MaxForce of its own.
+    Result<std::unique_ptr<composition::UsedSkill>> limit(
         const composition::Use& use, std::unique_ptr<composition::UsedSkill> used) const;
 
 private:

@@ -122,7 +122,12 @@ Result<void> Rebinder::exchange(Exchange& parts, SkillBinding& binding) {
             auto recorded = setup_.host.recorded(
                 parts.server->usedSkill(std::move(parts.pending.at(use.alias))),
                 {parts.server->name(), address.controllerName(), address.name});
-            used_skills.emplace(use.alias, setup_.forces.limit(use, std::move(recorded)));
+            auto limited = setup_.forces.limit(use, std::move(recorded));
+            if (!limited) {
+                used_skills.clear();
+                return fail(std::move(limited.error()));
+            }
+            used_skills.emplace(use.alias, std::move(*limited));
         }
         // A server that came back in the meantime stays.
         auto rebound = binding.server->awaySince()

@@ -35,7 +35,7 @@ public:
     /// Required text. An error is noted if it is missing or of another type.
     std::string text(std::string_view name) const;
     /// Text, or `fallback` if it is missing. An error is noted if it is of another type.
-    std::string textOr(std::string_view name, std::string fallback) const;
+    std::string textOr(std::string_view name, const std::string& fallback) const;
     /// true or false, or `fallback` if it is missing. An error is noted if it is of another type.
     bool flagOr(std::string_view name, bool fallback) const;
     /// Number, or `fallback` if it is missing. An error is noted if it is of another type or not

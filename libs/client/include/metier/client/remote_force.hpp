@@ -2,7 +2,9 @@
 
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
 
 #include "metier/base/error.hpp"
 #include "metier/composition/force_source.hpp"
@@ -36,11 +38,11 @@ struct RemoteForceOptions {
 };
 
 /// A force that a server publishes, followed at 5 ms, or as fast as the server allows. A Bad value,
-/// a value of another type or a lost connection is a lost force; it comes back by itself. A server
-/// that is silent for 2 s is lost.
+/// a value of another type or a lost connection is a lost force; a server that is silent for 2 s is
+/// lost. It is found and subscribed to again by itself.
 ///
 /// Threading: connect() and the destructor wait, on any thread but the executor's; all else on the
-/// executor's.
+/// executor's. A thread of its own connects again.
 class RemoteForce final : public composition::ForceSource {
 public:
     /// Connects, finds the Variables and subscribes; the first force comes later.
@@ -60,12 +62,18 @@ public:
 
 private:
     class State;
+    class Watch;
     struct Connections;
 
-    RemoteForce(std::shared_ptr<State> state, std::unique_ptr<Connections> connections);
+    RemoteForce(RemoteForceOptions options, std::shared_ptr<State> state,
+                std::shared_ptr<Watch> watch, std::unique_ptr<Connections> connections);
+    void run(const std::stop_token& stop);
 
-    std::shared_ptr<State> state_;  // shared with what was posted to the executor
-    std::unique_ptr<Connections> connections_;
+    const RemoteForceOptions options_;
+    std::shared_ptr<State> state_;              // shared with what was posted to the executor
+    std::shared_ptr<Watch> watch_;              // shared with the clients' callbacks
+    std::unique_ptr<Connections> connections_;  // the thread's
+    std::jthread thread_;
 };
 
 }  // namespace metier::client

@@ -53,7 +53,7 @@ public:
             }
             after = version_.load(std::memory_order_relaxed);
         } while (before != after || before % 2 != 0);
-        T value;
+        T value{};
         std::memcpy(static_cast<void*>(&value), words.data(), sizeof(T));
         return value;
     }

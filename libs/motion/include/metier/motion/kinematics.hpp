@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "metier/base/error.hpp"
 #include "metier/motion/chain.hpp"
@@ -194,6 +195,13 @@ public:
     /// Errors: unreachable (distance and reach, or the axis, its value and limit), invalid_argument
     ///         (sizes, not finite).
     Result<JointVector> inverse(const Pose& base_from_flange, const IkRequest& request) const;
+
+    /// Every joint position that inverse() could have chosen, nearest first: each within the limits
+    /// and bounds, turned by whole turns to be near the reference. A 7-axis arm without a
+    /// redundancy_angle: at that of the reference. For a numeric chain: the nearest.
+    /// \param base_from_flange, request as for inverse(); empty if they are not valid
+    std::vector<JointVector> inverseAll(const Pose& base_from_flange,
+                                        const IkRequest& request) const;
 
     /// The same by Levenberg-Marquardt, from the reference and then from up to 399 other fixed
     /// seeds: for chains without a closed form. Returns the first solution found, not the nearest.

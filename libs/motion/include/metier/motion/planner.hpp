@@ -48,6 +48,9 @@ struct PtpRequest {
     AxisBounds axis_bounds;
     /// Arm angle at the target [rad], for a 7-axis arm and a target pose; none: the nearest one.
     std::optional<double> redundancy_angle;
+    /// Pose of the tool frame, base_from_tool, to which a line goes next from a target pose: of the
+    /// joint positions at the target the nearest from which that line can be planned is taken.
+    std::optional<Pose> next_line;
 };
 
 /// Values for x, y, z, then rotation about x, y, z, all in the base frame.
@@ -179,7 +182,8 @@ public:
 
     /// Plans a motion straight in joint space; all axes arrive together. A target equal to the
     /// start gives a motion of no duration. Refused as invalid_request, unreachable, joint_limit or
-    /// collision.
+    /// collision; with a next_line that can be planned from no joint position, as that line is from
+    /// the nearest. At most 16 lines are tried.
     Planned<Trajectory> ptp(const PtpRequest& request) const;
     /// Plans a straight line; slows down along the path where an axis limits it. May be refused for
     /// every reason.
@@ -191,6 +195,11 @@ public:
     Planned<Trajectory> path(const PathRequest& request) const;
 
 private:
+    Planned<Trajectory> ptpBeforeLine(const PtpRequest& request,
+                                      const std::vector<JointVector>& targets,
+                                      const Pose& flange_from_tool) const;
+    std::optional<Refusal> refusalOf(const LinRequest& request) const;
+
     const RobotModel* model_;
     PlannerOptions options_;
 };

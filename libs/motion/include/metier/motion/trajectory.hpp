@@ -62,7 +62,7 @@ public:
     /// The inverse of pathParameter(): the state of the clock for a state of the path parameter.
     ScalarState clockAt(const ScalarState& path) const noexcept;
     /// Set-point for a state of the path parameter.
-    SetPoint sampleOnPath(const ScalarState& path) const noexcept;
+    SetPoint sampleOnPath(const ScalarState& state) const noexcept;
     /// Quickest way of the path parameter to rest within the robot's own limits, whatever limits
     /// the motion was planned with.
     /// \param factor share of these limits that may be used, > 0; above 1 for a Halt

@@ -314,7 +314,7 @@ ResultOf<Work> Server::call(Work work, std::chrono::milliseconds deadline) {
         std::promise<ResultOf<Work>> outcome;
     };
     // Both are shared: the task because a posted function is copied, the mark with this function.
-    auto task = std::make_shared<Posted>(std::move(work), std::promise<ResultOf<Work>>());
+    auto task = std::make_shared<Posted>(Posted{std::move(work), {}});
     const auto taken = std::make_shared<std::atomic<bool>>(false);
     auto outcome = task->outcome.get_future();
     post([task = std::move(task), taken] {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -125,7 +126,7 @@ private:
     // A UA_Variant in place, so that no header of the stack is needed here; its size is checked at
     // compile time in value.cpp.
     static constexpr std::size_t kNativeSize = 48;
-    alignas(std::max_align_t) std::byte native_[kNativeSize];
+    alignas(std::max_align_t) std::array<std::byte, kNativeSize> native_;
 };
 
 /// An entry of a list of named values.

@@ -55,6 +55,9 @@ struct CartesianMoveParameters : MoveParameters {
     skill::Frame target_position;
     /// Range of each axis [rad]; all zero: the robot's own.
     std::vector<skill::Range> axis_bounds{};
+    /// Pose to which a line goes next, base_from_tool [m, rad]: the arm arrives in a joint position
+    /// from which it is possible; none: in the nearest. Only a PTP has it.
+    std::optional<skill::Frame> next_position{};
 };
 
 /// A move to a pose, which a contact force ends early.

@@ -34,7 +34,7 @@ public:
     /// \param clock measures the delays; must outlive this
     /// \param patience longest time that check() and roleOf() wait for a change of the file
     /// Errors: those of UserTable::load().
-    static Result<LoginGuard> open(std::filesystem::path file, const Clock& clock,
+    static Result<LoginGuard> open(const std::filesystem::path& file, const Clock& clock,
                                    std::chrono::milliseconds patience = kReadPatience);
 
     /// Checks a password and returns the role of its user.

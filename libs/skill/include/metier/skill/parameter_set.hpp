@@ -43,7 +43,7 @@ public:
     void bind(std::string_view session);
     /// Takes a value that checkValue() has accepted; Null means the default.
     /// \param field one that field() has returned
-    void write(const Field& field, Value value);
+    void write(const Field& field, const Value& value);
     /// Returns a value for every parameter: the given one, or its default. The values of this set
     /// are not used and not changed.
     /// Errors: as checkValue(); invalid_argument, with the name that is unknown or those that need

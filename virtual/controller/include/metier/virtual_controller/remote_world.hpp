@@ -33,7 +33,7 @@ public:
     /// \param address IP address of the world's process
     /// \param port TCP port of the world's process
     /// An address that cannot be parsed is not reported here: check it with parseAddress() before.
-    RemoteWorld(asio::io_context& context, std::string name, std::string address,
+    RemoteWorld(asio::io_context& context, std::string name, const std::string& address,
                 std::uint16_t port = kPort);
     /// Closes the connection; handlers that are still queued do nothing.
     ~RemoteWorld() override;
