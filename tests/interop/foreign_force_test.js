@@ -5,7 +5,7 @@ const assert = require('node:assert');
 const fs = require('node:fs');
 const os = require('node:os');
 const path = require('node:path');
-const { after, afterEach, before, beforeEach, test } = require('node:test');
+const { after, afterEach, before, test } = require('node:test');
 const { DataType, OPCUAClient, VariantArrayType } = require('node-opcua');
 const { runMetier, startProcess, startServer } = require('./metier_process');
 
@@ -48,10 +48,6 @@ server = "${sensor.url}"
 ${force}
 `);
 
-async function startComponent(force = kForce) {
-  component = await startServer(serveArgs(componentCell(force), 'press'));
-}
-
 before(async () => {
   arm = await startServer(serveArgs(write('arm.toml', `
 name = "arm"
@@ -63,24 +59,27 @@ model = "${path.join(kRoot, 'models', 'iiwa7.toml')}"
 nodeset = "iiwa"
 skills = ["CartesianPtpMoveSkill", "${kLine}", "JointPtpMoveSkill", "JointLinearMoveSkill"]
 `), 'iiwa'));
+  sensor = await startProcess(process.execPath, [kSensor]);
 });
 
 after(async () => {
+  await sensor.stop();
   await arm.stop();
   fs.rmSync(folder, { recursive: true });
 });
 
-beforeEach(async () => {
-  sensor = await startProcess(process.execPath, [kSensor]);
+/** Begins a test of a move: the arm stands at its start, and the sensor measures nothing. */
+async function begin(force = kForce) {
+  await measure([0, 0, 0]);
   const { status, errors } = await runMetier(
     ['run', arm.url, 'JointPtpMoveSkill', '--set', `TargetJointPosition=${kStart}`]);
   assert.strictEqual(status, 0, errors);
-});
+  component = await startServer(serveArgs(componentCell(force), 'press'));
+}
 
 afterEach(async () => {
   await component?.stop();
   component = undefined;
-  await sensor.stop();
 });
 
 /** The sensor measures it from now on. @param {number[]} newtons */
@@ -122,7 +121,7 @@ const resultOf = ({ status, output, errors }) => {
 };
 
 test('a line that meets no force reaches its target', async () => {
-  await startComponent();
+  await begin();
   await measure([500, 0, 19]);
   const result = resultOf(await forceMove(kNear));
   assert.deepStrictEqual(result.ForcesExceeded, { x: 0, y: 0, z: 0 });
@@ -131,7 +130,7 @@ test('a line that meets no force reaches its target', async () => {
 });
 
 test('a force ends the line, which is Ready again', async () => {
-  await startComponent();
+  await begin();
   const result = resultOf(await meanwhile(() => measure([0, 0, -30])));
   assert.deepStrictEqual(result.ForcesExceeded, { x: 0, y: 0, z: -30 });
   assert.strictEqual(result.ReachedPose, null);
@@ -140,35 +139,20 @@ test('a force ends the line, which is Ready again', async () => {
 });
 
 test('a force that is measured at the flange is turned into the base frame', async () => {
-  await startComponent(`${kForce}\narm = "${arm.url}"`);
+  await begin(`${kForce}\narm = "${arm.url}"`);
   const { x, z } = resultOf(await meanwhile(() => measure([0, 0, 30]))).ForcesExceeded;
   assert.ok(Math.abs(z + 30) < 0.1, `${z} N along z of the base frame`);
   assert.ok(Math.abs(x) < 2, `${x} N along x: the flange looks down, but for 0.04 rad`);
 });
 
 test('with HaltOnForce a force is an error', async () => {
-  await startComponent();
+  await begin();
   const { status, errors } = await meanwhile(() => measure([0, 0, 30]), '--set', 'HaltOnForce=true');
   assert.notStrictEqual(status, 0);
   assert.match(errors, /the contact force \[0\.0, 0\.0, 30\.0\] N in the base frame is over its limit/);
   await measure([0, 0, 0]);
   assert.strictEqual((await runMetier(['reset', component.url, kSkill])).status, 0);
   resultOf(await forceMove(kNear));
-});
-
-test('a sensor that dies halts the line, and nothing begins without it', async () => {
-  await startComponent();
-  const { status, errors } = await meanwhile(() => sensor.kill());
-  assert.notStrictEqual(status, 0);
-  assert.match(errors, /the force is not known any more/);
-  await awaitState(kLine, 'Halted');
-  const reset = await runMetier(['reset', component.url, kSkill]);
-  assert.strictEqual(reset.status, 0, reset.errors);
-  const again = await forceMove(kNear);
-  assert.notStrictEqual(again.status, 0);
-  assert.match(again.errors, /s=Force/);
-  const line = await runMetier(['reset', arm.url, kLine]);
-  assert.strictEqual(line.status, 0, line.errors);
 });
 
 for (const [force, reason] of [
@@ -184,3 +168,19 @@ for (const [force, reason] of [
     assert.match(refused.errors, reason);
   });
 }
+
+// The last one: the sensor is gone afterwards.
+test('a sensor that dies halts the line, and nothing begins without it', async () => {
+  await begin();
+  const { status, errors } = await meanwhile(() => sensor.kill());
+  assert.notStrictEqual(status, 0);
+  assert.match(errors, /the force is not known any more/);
+  await awaitState(kLine, 'Halted');
+  const reset = await runMetier(['reset', component.url, kSkill]);
+  assert.strictEqual(reset.status, 0, reset.errors);
+  const again = await forceMove(kNear);
+  assert.notStrictEqual(again.status, 0);
+  assert.match(again.errors, /s=Force/);
+  const line = await runMetier(['reset', arm.url, kLine]);
+  assert.strictEqual(line.status, 0, line.errors);
+});
