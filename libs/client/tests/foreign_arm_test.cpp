@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <thread>
 #include <vector>
 
 #include "foreign_arm.hpp"
@@ -171,6 +172,36 @@ TEST_F(MovingForeignArm, EndsTheMotionWhenItsStreamIsHaltedAndMovesAgainAfterRes
     const auto again = std::make_shared<SmoothMove>(0.1, 30);
     ASSERT_TRUE(arm_->attach(again));
     EXPECT_EQ(again->awaitEnd(), EndCause::done) << again->text();
+}
+
+/// Whether the arm is seen to stand within that time.
+bool standsWithin(const RemoteArm& arm, std::chrono::milliseconds limit) {
+    for (const auto end = std::chrono::steady_clock::now() + limit;
+         std::chrono::steady_clock::now() < end; std::this_thread::yield()) {
+        if (arm.state().standstill) {
+            return true;
+        }
+    }
+    return false;
+}
+
+TEST(ForeignArm, DoesNotStandWhileItsServerDoesNotAnswer) {
+    ForeignArm foreign;
+    const auto arm = connect(foreign);
+    ASSERT_TRUE(arm->attach(std::make_shared<SmoothMove>(0.5, 1000)));
+    ASSERT_TRUE(foreign.awaitSetPoints(100));
+    foreign.hold(true);
+    EXPECT_FALSE(standsWithin(*arm, 700ms))
+        << "its stream would be halted before it is at its last set-point";
+    foreign.hold(false);
+}
+
+TEST(ForeignArm, DoesNotStandWhileItCreeps) {
+    ForeignArm foreign;
+    const auto arm = connect(foreign);
+    ASSERT_TRUE(arm->attach(std::make_shared<SmoothMove>(0.03, 3000)));  // 4e-6 rad a cycle, later
+    ASSERT_TRUE(foreign.awaitSetPoints(300));
+    EXPECT_FALSE(standsWithin(*arm, 700ms));
 }
 
 TEST_F(MovingForeignArm, IsHaltedAtAnEmergencyStop) {

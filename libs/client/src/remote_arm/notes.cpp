@@ -5,7 +5,7 @@
 namespace metier::client {
 namespace {
 
-// A change of the measured arm between two samples that counts as motion [rad].
+// A change of the measured arm since it was last seen in motion that counts as motion [rad].
 constexpr double kMotion = 1e-5;
 
 void enter(Observed& seen, skill::State state) {
@@ -25,8 +25,11 @@ Observed Notes::observed() const {
 void Notes::notePosition(const device::JointArray& position) {
     note([&](Observed& seen) {
         seen.sampled = std::chrono::steady_clock::now();
-        if (device::largestDifference(seen.position, position) > kMotion) {
+        if (seen.place.size() != position.size()) {
+            seen.place = position;  // the first
+        } else if (device::largestDifference(seen.place, position) > kMotion) {
             seen.moved = seen.sampled;
+            seen.place = position;
         }
         seen.position = position;
     });

@@ -22,6 +22,7 @@ struct Observed {
     device::JointArray position;     ///< measured [rad]; empty before the first
     SteadyTime sampled{};            ///< when `position` came
     SteadyTime moved{};              ///< when the measured arm was last seen in motion
+    device::JointArray place{};      ///< where that was [rad]
     std::optional<bool> standstill;  ///< as the server judges; none if it does not publish it
     device::SafetyState safety = device::SafetyState::normal;
     SteadyTime safety_since{};  ///< when `safety` became what it is

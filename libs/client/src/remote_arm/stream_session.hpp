@@ -51,6 +51,8 @@ public:
     Result<Ending> endStream();
     /// Whether the stream is of another maker: it does not end by silence.
     bool isForeign() const noexcept { return foreign_; }
+    /// Whether the measured position is read again and again; else the server publishes it.
+    bool asksForPosition() const noexcept { return !arm_.nodes; }
     /// Whether the server has not answered set-points for so long that more would reach the arm in
     /// one leap.
     bool isBehind() const;

@@ -315,7 +315,10 @@ bool RemoteArmWorker::judgeStandstill(const Observed& seen, bool at_target) cons
         // While a stream runs, the news may be from before its begin until the arm is at its end.
         return *seen.standstill && (at_target || source_ == nullptr);
     }
-    const auto unmoved = std::chrono::steady_clock::now() - seen.moved;
+    // Between two answers of a server that is asked for the position nothing is known.
+    const auto last_known =
+        session_->asksForPosition() ? seen.sampled : std::chrono::steady_clock::now();
+    const auto unmoved = last_known - seen.moved;
     // Late news of a motion that has come to its end is no motion.
     return unmoved > kStandstill ||
            (at_target && at_own_target_ && (settled_ || unmoved > kStandstillAtTarget));
