@@ -81,7 +81,7 @@ private:
     void learnTime(const LockNodes& nodes);
     void renewAll(const std::stop_token& stop);
     void renew(const LockNodes& nodes);
-    void renewed(const opcua::NodeId& lock, const opcua::Answer<opcua::CallResult>& answer);
+    void renewed(const opcua::NodeId& id, const opcua::Answer<opcua::CallResult>& answer);
 
     opcua::Client& client_;
     std::mutex mutex_;

@@ -68,7 +68,7 @@ Result<void> ControlsOfPage::take(const LinkedController& controller, const std:
 
 bool ControlsOfPage::holds(const std::string& control) const {
     const std::lock_guard lock(mutex_);
-    return keys_.count(control) != 0;
+    return keys_.contains(control);
 }
 
 std::set<std::string> ControlsOfPage::release() {

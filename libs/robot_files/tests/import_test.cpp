@@ -16,8 +16,6 @@ using motion::IkKind;
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 using testing::SizeIs;
 
 SourceFile sourceFile(const std::string& name) {

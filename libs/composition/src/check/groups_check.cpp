@@ -161,7 +161,7 @@ void StepsCheck::eitherBranch(Visit visit, const Then& then) {
                     }
                     const bool sure = one.sure && other.sure && !one.refusal && !other.refusal;
                     if (one.refusal || other.refusal) {
-                        auto found = other.refusal ? one : std::move(other);
+                        auto found = other.refusal ? one : other;
                         found.sure = sure;
                         then(std::move(found));
                     } else {
