@@ -46,7 +46,7 @@ class Cell:
 def press(cell: Cell, server: str, speed: float) -> tuple[float, dict]:
     """Moves against the wall and back.
 
-    \\return how much farther than the limit needs the arm stood in the wall [mm], and the results of the move
+    Returns how much farther than the limit needs the arm stood in the wall [mm], and the results of the move.
     """
     results = cell.run(server, "CartesianLinearForceMoveSkill", TargetPosition=f"{-BACK},0,0,0,0,0",
                        MaxForce=f"{LIMIT},0,0", SpeedOverride=speed)

@@ -163,7 +163,7 @@ TEST_F(ForceLimitedSkillTest, EndsAtAForceAndResetsTheMove) {
     EXPECT_FALSE(skill_->leftOver());
 }
 
-TEST_F(ForceLimitedSkillTest, MeasuresTheReactionByTheStandstillOfAServerThatTellsNoBraking) {
+TEST_F(ForceLimitedSkillTest, MeasuresTheReactionByTheStandstillOfAServerThatReportsNoBraking) {
     begin();
     executor_->advance(10ms);
     force_->measure(force({0, 0, -21}));

@@ -48,27 +48,27 @@ std::optional<Vector3> fromList(const opcua::Value& value) {
 }
 
 /// Errors: connection_lost (a Bad value), type_mismatch.
-Result<Vector3> vectorOf(const DataValue& told, const std::string& name) {
-    if (told.status.isBad() || told.value.isEmpty()) {
-        return fail(Errc::connection_lost, fmt::format("{} is {}", name, told.status.name()));
+Result<Vector3> vectorOf(const DataValue& data, const std::string& name) {
+    if (data.status.isBad() || data.value.isEmpty()) {
+        return fail(Errc::connection_lost, fmt::format("{} is {}", name, data.status.name()));
     }
-    if (const auto vector = told.value.as<opcua::ThreeDVector>()) {
+    if (const auto vector = data.value.as<opcua::ThreeDVector>()) {
         return Vector3{vector->x, vector->y, vector->z};
     }
-    auto numbers = fromList<double>(told.value);
-    numbers = numbers ? numbers : fromList<float>(told.value);
+    auto numbers = fromList<double>(data.value);
+    numbers = numbers ? numbers : fromList<float>(data.value);
     if (!numbers) {
         return fail(Errc::type_mismatch,
-                    fmt::format("{} is {}, not three numbers", name, told.value.typeName()));
+                    fmt::format("{} is {}, not three numbers", name, data.value.typeName()));
     }
     return *numbers;
 }
 
-Result<Frame> frameOf(const DataValue& told, const std::string& name) {
-    if (told.status.isBad() || told.value.isEmpty()) {
-        return fail(Errc::connection_lost, fmt::format("{} is {}", name, told.status.name()));
+Result<Frame> frameOf(const DataValue& data, const std::string& name) {
+    if (data.status.isBad() || data.value.isEmpty()) {
+        return fail(Errc::connection_lost, fmt::format("{} is {}", name, data.status.name()));
     }
-    auto frame = told.value.as<opcua::ThreeDFrame>();
+    auto frame = data.value.as<opcua::ThreeDFrame>();
     if (!frame) {
         return fail(Errc::type_mismatch, fmt::format("{}: {}", name, frame.error().message));
     }
@@ -189,24 +189,24 @@ public:
 
     /// Callback for the client's thread, which hands each value to take() on the executor's.
     std::function<void(const DataValue&)> taker(void (State::*take)(const DataValue&, SteadyTime)) {
-        return [state = shared_from_this(), take](const DataValue& told) {
+        return [state = shared_from_this(), take](const DataValue& data) {
             const auto now = std::chrono::steady_clock::now();
-            state->executor_->post([state, take, told, now] { ((*state).*take)(told, now); });
+            state->executor_->post([state, take, data, now] { ((*state).*take)(data, now); });
         };
     }
 
-    void takeForce(const DataValue& told, SteadyTime now) {
-        force_ = vectorOf(told, name_).map([now](const Vector3& newtons) {
+    void takeForce(const DataValue& data, SteadyTime now) {
+        force_ = vectorOf(data, name_).map([now](const Vector3& newtons) {
             return MeasuredForce{.force = newtons, .received = now};
         });
         report();
     }
-    void takeTorque(const DataValue& told, SteadyTime /*now*/) {
-        const auto torque = vectorOf(told, name_);
+    void takeTorque(const DataValue& data, SteadyTime /*now*/) {
+        const auto torque = vectorOf(data, name_);
         torque_ = torque ? std::optional(*torque) : std::nullopt;
     }
-    void takePose(const DataValue& told, SteadyTime /*now*/) {
-        pose_ = frameOf(told, "the pose of " + name_);
+    void takePose(const DataValue& data, SteadyTime /*now*/) {
+        pose_ = frameOf(data, "the pose of " + name_);
         report();
     }
 
@@ -326,9 +326,9 @@ Result<std::unique_ptr<RemoteForce::Connections>> RemoteForce::Connections::open
     }
     METIER_TRY(
         connections->follow(sensor, variables.force,
-                            [watch, take = state.taker(&State::takeForce)](const DataValue& told) {
-                                watch->noteValue(told.status.isBad());
-                                take(told);
+                            [watch, take = state.taker(&State::takeForce)](const DataValue& data) {
+                                watch->noteValue(data.status.isBad());
+                                take(data);
                             }));
     return connections;
 }
