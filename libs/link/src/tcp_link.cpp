@@ -35,6 +35,16 @@ Result<void> connectTo(tcp::socket& socket, const tcp::endpoint& endpoint, Stead
     return {};
 }
 
+/// The same for each way in which a peer's end shows: with bytes that it has not read, it is a
+/// reset.
+Error lost(const std::string& peer, const asio::error_code& error) {
+    const bool closed = error == asio::error::eof || error == asio::error::connection_reset ||
+                        error == asio::error::broken_pipe;
+    return {
+        Errc::connection_lost,
+        fmt::format("{}: {}", peer, closed ? "the peer closed the connection" : error.message())};
+}
+
 void sendAtOnce(tcp::socket& socket) {
     asio::error_code ignored;
     socket.non_blocking(true, ignored);
@@ -81,11 +91,8 @@ Result<std::size_t> TcpLink::receive(std::span<std::byte> buffer, SteadyTime dea
         if (!error) {
             return count;
         }
-        if (error == asio::error::eof) {
-            return fail(Errc::connection_lost, peer_ + ": the peer closed the connection");
-        }
         if (error != asio::error::would_block && error != asio::error::interrupted) {
-            return fail(Errc::connection_lost, peer_ + ": " + error.message());
+            return fail(lost(peer_, error));
         }
         METIER_TRY(pollUntil(socket_.native_handle(), POLLIN, deadline, peer_));
     }
@@ -108,7 +115,7 @@ Result<void> TcpLink::send(std::span<const std::byte> bytes, SteadyTime deadline
             continue;
         }
         if (error != asio::error::would_block) {
-            return fail(Errc::connection_lost, peer_ + ": " + error.message());
+            return fail(lost(peer_, error));
         }
         METIER_TRY(pollUntil(socket_.native_handle(), POLLOUT, deadline, peer_));
     }

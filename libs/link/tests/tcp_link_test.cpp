@@ -60,6 +60,19 @@ TEST(TcpLink, TellsThatThePeerIsGone) {
     EXPECT_THAT(closed.error().message, HasSubstr("closed"));
 }
 
+TEST(TcpLink, TellsThatThePeerIsGoneThoughItHasNotReadAll) {
+    Pair pair;
+    ASSERT_TRUE(pair.near.send(bytesOf("ping"), in(30s)));
+    { const auto gone = std::move(pair.far); }  // which resets the connection
+    std::array<std::byte, 4> buffer{};
+    for (const auto& lost : {pair.near.receive(buffer, in(30s)).map([](std::size_t) {}),
+                             pair.near.send(bytesOf("ping"), in(30s))}) {
+        ASSERT_FALSE(lost);
+        EXPECT_EQ(lost.error().code, Errc::connection_lost);
+        EXPECT_THAT(lost.error().message, HasSubstr("closed the connection"));
+    }
+}
+
 TEST(TcpLink, IsWokenByShutdownFromAnotherThread) {
     Pair pair;
     auto reading = std::async(std::launch::async, [&] {
