@@ -84,6 +84,20 @@ StatusCode BareClient::closeSessionWithoutSubscriptions() {
     return StatusCode(response->responseHeader.serviceResult);
 }
 
+StatusCode BareClient::takeSubscriptionOf(const BareClient& other) {
+    auto id = other.subscription_;
+    UA_TransferSubscriptionsRequest request{};
+    request.subscriptionIdsSize = 1;
+    request.subscriptionIds = &id;
+    request.sendInitialValues = true;
+    Owned<UA_TransferSubscriptionsResponse> response(
+        UA_TYPES[UA_TYPES_TRANSFERSUBSCRIPTIONSRESPONSE]);
+    __UA_Client_Service(client_, &request, &UA_TYPES[UA_TYPES_TRANSFERSUBSCRIPTIONSREQUEST],
+                        response.get(), &UA_TYPES[UA_TYPES_TRANSFERSUBSCRIPTIONSRESPONSE]);
+    return StatusCode(response->resultsSize == 1 ? response->results[0].statusCode
+                                                 : response->responseHeader.serviceResult);
+}
+
 DataValue BareClient::read(const NodeId& variable) {
     return readAttribute(variable, UA_ATTRIBUTEID_VALUE);
 }

@@ -37,6 +37,8 @@ public:
     void breakConnection();
     /// Ends the session and leaves its Subscriptions to their lifetime.
     StatusCode closeSessionWithoutSubscriptions();
+    /// Asks for the Subscription of another client. \return what the server says of it
+    StatusCode takeSubscriptionOf(const BareClient& other);
 
     DataValue read(const NodeId& variable);
     /// Reads an attribute by its number.

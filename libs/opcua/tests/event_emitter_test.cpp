@@ -126,6 +126,19 @@ TEST_F(EventEmitterTest, EveryFieldReachesTheClient) {
     EXPECT_EQ(event[kIntermediateResult], Value::of(std::uint32_t{7}));
 }
 
+TEST_F(EventEmitterTest, ASubscriptionWithoutASessionHarmsNoServer) {
+    std::vector<ReceivedEvent> events;
+    ASSERT_GT(client_.subscribe(100), 0);
+    ASSERT_EQ(client_.watchEvents(kSkill, kSelected, events), status::kGood);
+    ASSERT_EQ(client_.closeSessionWithoutSubscriptions(), status::kGood);
+    const auto raised = emit(transition(7));
+    EXPECT_TRUE(raised) << raised.error().message;
+    BareClient other;
+    ASSERT_EQ(other.connect(server_->endpointUrl()), status::kGood);
+    EXPECT_TRUE(other.read(NodeId(0, 2258U)).status.isGood()) << "the server lives";
+    other.disconnect();
+}
+
 TEST_F(EventEmitterTest, EveryNotifierAboveTheSourcePassesItOn) {
     std::vector<ReceivedEvent> skill;
     std::vector<ReceivedEvent> device;

@@ -71,5 +71,28 @@ TEST(OutlivedSession, ItsSubscriptionMayWatchDiagnosticsWithoutEndingTheServer) 
     EXPECT_GE(reads, then + 3);
 }
 
+// The stack (1.4.11) forgets, on a transfer, the list of items that are sampled with the publishing
+// interval: their end then wrote into memory that was freed.
+TEST(OutlivedSession, ItsSubscriptionIsNotGivenToAnother) {
+    std::atomic<int> reads{0};
+    const auto server = makeServer();
+    const auto counted = addCounted(*server, reads);
+    ASSERT_TRUE(server->start());
+    BareClient before;
+    ASSERT_EQ(before.connect(server->endpointUrl()), status::kGood);
+    const auto interval = before.subscribe(10);
+    std::vector<DataValue> values;
+    ASSERT_EQ(before.watchValue(counted, interval, values), status::kGood);
+    ASSERT_TRUE(before.runUntil([&] { return !values.empty(); }));
+
+    BareClient after;
+    ASSERT_EQ(after.connect(server->endpointUrl()), status::kGood);
+    EXPECT_EQ(after.takeSubscriptionOf(before), status::kBadUserAccessDenied);
+    values.clear();
+    EXPECT_TRUE(before.runUntil([&] { return !values.empty(); })) << "it goes on";
+    ASSERT_EQ(before.closeSessionWithoutSubscriptions(), status::kGood);
+    EXPECT_EQ(after.takeSubscriptionOf(before), status::kBadUserAccessDenied);
+}
+
 }  // namespace
 }  // namespace metier::opcua

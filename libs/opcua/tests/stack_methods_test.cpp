@@ -45,6 +45,18 @@ TEST_F(StackMethodsTest, TakeNoArrayForAScalar) {
     EXPECT_TRUE(client_->read({0, 2258U})) << "the server lives";
 }
 
+// The stack took what lies behind a smaller node for the mark of an asynchronous Method, and never
+// answered.
+TEST_F(StackMethodsTest, AreNoOtherNodes) {
+    const NodeId objects(0, 85U);
+    for (const auto& other : {objects, NodeId(0, 58U), NodeId(0, 47U), NodeId(0, 22U),
+                              NodeId(0, 63U), NodeId(0, 2258U), NodeId(0, 7'654'321U)}) {
+        const auto answer = client_->call(objects, other, {});
+        ASSERT_FALSE(answer) << other.toString();
+        EXPECT_EQ(answer.error().status, status::kBadMethodInvalid) << answer.error().message;
+    }
+}
+
 TEST_F(StackMethodsTest, TellOfTheSubscriptionsOfTheSession) {
     const auto subscription =
         client_->subscribeData({0, 2258U}, {}, [](const DataValue& /*value*/) {});

@@ -104,9 +104,11 @@ private:
         const auto deadline = Clock::now() + std::chrono::minutes(1);
         do {
             ask(options_.first + options_.messages);
+            if (!report_.tally.defects.empty()) {
+                return;  // of a server that has ended there are no descriptors
+            }
             report_.descriptors_after = target_.descriptors();
-        } while (report_.descriptors_after > report_.descriptors_before &&
-                 Clock::now() < deadline && report_.tally.defects.empty());
+        } while (report_.descriptors_after > report_.descriptors_before && Clock::now() < deadline);
     }
 
     const OnslaughtOptions options_;

@@ -1,4 +1,4 @@
-#include "server/definition_reads.hpp"
+#include "server/node_store_front.hpp"
 
 #include <cstddef>
 
@@ -24,6 +24,11 @@ bool readsDefinition(UA_UInt32 attributes) noexcept {
            attributes == UA_NODEATTRIBUTESMASK_ROLEPERMISSIONS;
 }
 
+/// Whether the Call service looks up the Method. No other part of the stack (1.4) has this mask.
+bool looksUpMethod(UA_UInt32 attributes) noexcept {
+    return attributes == (UA_NODEATTRIBUTESMASK_NODECLASS | UA_NODEATTRIBUTESMASK_EXECUTABLE);
+}
+
 /// Passes a call on to the node store behind.
 template <auto kFunction>
 struct Pass;
@@ -38,9 +43,9 @@ struct Pass<kFunction> {
 }  // namespace
 
 /// Callbacks of the node store in front.
-struct DefinitionReads::Front {
-    static DefinitionReads& of(void* context) noexcept {
-        return *static_cast<DefinitionReads*>(context);
+struct NodeStoreFront::Front {
+    static NodeStoreFront& of(void* context) noexcept {
+        return *static_cast<NodeStoreFront*>(context);
     }
 
     template <auto kFunction>
@@ -58,9 +63,17 @@ struct DefinitionReads::Front {
         if (readsDefinition(attributes)) {
             guarded([&] { stand_in = self.lend(*id); });
         }
-        return stand_in != nullptr ? stand_in
-                                   : Pass<&UA_Nodestore::getNode>::on(self.behind_, id, attributes,
-                                                                      references, directions);
+        if (stand_in != nullptr) {
+            return stand_in;
+        }
+        const auto* const node =
+            Pass<&UA_Nodestore::getNode>::on(self.behind_, id, attributes, references, directions);
+        if (node != nullptr && looksUpMethod(attributes) &&
+            node->head.nodeClass != UA_NODECLASS_METHOD) {
+            Pass<&UA_Nodestore::releaseNode>::on(self.behind_, node);
+            return nullptr;
+        }
+        return node;
     }
 
     static void releaseNode(void* context, const UA_Node* node) noexcept {
@@ -73,7 +86,7 @@ struct DefinitionReads::Front {
     }
 };
 
-DefinitionReads::DefinitionReads(const DataTypeStore& types) : types_(types) {
+NodeStoreFront::NodeStoreFront(const DataTypeStore& types) : types_(types) {
     auto& variable = stand_in_.variableNode;
     variable = UA_VariableNode{};
     variable.head.nodeClass = UA_NODECLASS_VARIABLE;
@@ -82,7 +95,7 @@ DefinitionReads::DefinitionReads(const DataTypeStore& types) : types_(types) {
     variable.value.data.value.hasValue = true;
 }
 
-void DefinitionReads::install(UA_Nodestore& store) {
+void NodeStoreFront::install(UA_Nodestore& store) {
     behind_ = store;
     store.context = this;
     Front::pass<&UA_Nodestore::clear>(store);
@@ -100,7 +113,7 @@ void DefinitionReads::install(UA_Nodestore& store) {
 }
 
 /// \return null if there is no definition
-const UA_Node* DefinitionReads::lend(const UA_NodeId& data_type) {
+const UA_Node* NodeStoreFront::lend(const UA_NodeId& data_type) {
     auto* const request = requestOf(&data_type);
     const auto* definition = types_.enumeration(fromNative(data_type));
     if (definition == nullptr || asked_ != nullptr ||
@@ -118,7 +131,7 @@ const UA_Node* DefinitionReads::lend(const UA_NodeId& data_type) {
     return &stand_in_;
 }
 
-void DefinitionReads::takeBack() noexcept {
+void NodeStoreFront::takeBack() noexcept {
     asked_->attributeId = UA_ATTRIBUTEID_DATATYPEDEFINITION;
     asked_ = nullptr;
 }

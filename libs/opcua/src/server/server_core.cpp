@@ -127,7 +127,7 @@ Result<> ServerCore::build() {
     METIER_TRY(checkPeers());
     METIER_TRY(applyOptions(options_, peers_.get(), config));
     sessions_.install(config);
-    definition_reads_.install(config.nodestore);
+    node_store_front_.install(config.nodestore);
     config.accessControl.getUserExecutable = userExecutable;
     config.nodeLifecycle.constructor = Callbacks::nodeMade;
     config.nodeLifecycle.destructor = Callbacks::nodeDeleted;

@@ -18,9 +18,9 @@
 #include "nodesets/data_types.hpp"
 #include "nodesets/nodeset_file.hpp"
 #include "server/audit_trail.hpp"
-#include "server/definition_reads.hpp"
 #include "server/event_watch.hpp"
 #include "server/node_hooks.hpp"
+#include "server/node_store_front.hpp"
 #include "server/pending_timers.hpp"
 #include "server/sessions.hpp"
 #include "server/stack_methods.hpp"
@@ -112,7 +112,7 @@ private:
     StackMethods stack_methods_;
     AddressSpace nodes_;
     std::unordered_map<NodeId, std::vector<NodeId>> notifiers_;
-    DefinitionReads definition_reads_{data_types_};  ///< outlives the server, which points into it
+    NodeStoreFront node_store_front_{data_types_};  ///< outlives the server, which points into it
     std::unique_ptr<UA_Server, DeleteServer> server_;
     std::shared_ptr<PendingTimers> timers_;  ///< shared for the weak pointers of handles
     AuditTrail audit_;
