@@ -176,6 +176,19 @@ StatusCode BareClient::writePart(const NodeId& variable, const Value& value,
     return writeItem(variable, item);
 }
 
+StatusCode BareClient::writeArray(const NodeId& variable, std::size_t length,
+                                  std::vector<std::uint32_t> dimensions) {
+    std::vector<double> zeros(length);
+    UA_WriteValue item{};
+    auto& value = item.value.value;
+    value.type = &UA_TYPES[UA_TYPES_DOUBLE];
+    value.data = zeros.empty() ? UA_EMPTY_ARRAY_SENTINEL : zeros.data();
+    value.arrayLength = zeros.size();
+    value.arrayDimensions = dimensions.data();
+    value.arrayDimensionsSize = dimensions.size();
+    return writeItem(variable, item);
+}
+
 BareClient::CallResult BareClient::call(const NodeId& object, const NodeId& method,
                                         const std::vector<Value>& inputs) {
     std::vector<UA_Variant> arguments;

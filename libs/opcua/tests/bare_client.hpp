@@ -53,6 +53,9 @@ public:
                              UtcTime server);
     /// Writes a part of an array: "1" or "0:1".
     StatusCode writePart(const NodeId& variable, const Value& value, const std::string& range);
+    /// Writes so many zeros of Double, with these dimensions.
+    StatusCode writeArray(const NodeId& variable, std::size_t length,
+                          std::vector<std::uint32_t> dimensions);
     struct CallResult {
         StatusCode status;
         std::vector<Value> outputs;

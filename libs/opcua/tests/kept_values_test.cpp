@@ -10,8 +10,8 @@ namespace {
 using testing::BareClient;
 using testing::NodesetFolder;
 
-/// Variables 1 (Double), 2 (a Property), 3 (Double[3]) and 4, of which clients may write status and
-/// time; a type 10 with a Variable 11.
+/// Variables 1 (Double), 2 (a Property), 3 (Double[3]), 4, of which clients may write status and
+/// time, and 5 (Double of any rank); a type 10 with a Variable 11.
 constexpr const char* kNodes = R"(
 <UAVariable NodeId="ns=1;i=1" BrowseName="1:Speed" DataType="Double" AccessLevel="3"><References>
   <Reference ReferenceType="Organizes" IsForward="false">i=85</Reference>
@@ -26,6 +26,10 @@ constexpr const char* kNodes = R"(
   <Reference ReferenceType="HasTypeDefinition">i=63</Reference></References>
   <Value><uax:ListOfDouble><uax:Double>1</uax:Double><uax:Double>2</uax:Double><uax:Double>3</uax:Double></uax:ListOfDouble></Value></UAVariable>
 <UAVariable NodeId="ns=1;i=4" BrowseName="1:Free" DataType="Double" AccessLevel="99"><References>
+  <Reference ReferenceType="Organizes" IsForward="false">i=85</Reference>
+  <Reference ReferenceType="HasTypeDefinition">i=63</Reference></References>
+  <Value><uax:Double>1.5</uax:Double></Value></UAVariable>
+<UAVariable NodeId="ns=1;i=5" BrowseName="1:Any" DataType="Double" ValueRank="-2" AccessLevel="3"><References>
   <Reference ReferenceType="Organizes" IsForward="false">i=85</Reference>
   <Reference ReferenceType="HasTypeDefinition">i=63</Reference></References>
   <Value><uax:Double>1.5</uax:Double></Value></UAVariable>
@@ -115,10 +119,29 @@ TEST_F(KeptValues, AreWrittenInParts) {
     EXPECT_EQ(client_.read(speeds).value, Value::of(std::vector{1.0, 9.0, 3.0}));
     EXPECT_EQ(client_.writePart(speeds, Value::of(std::vector{9.0}), "7").name(),
               "BadIndexRangeNoData");
+    // The stack (1.4.11) wrote beyond the end.
+    EXPECT_EQ(client_.writePart(speeds, Value::of(std::vector{7.0, 8.0, 9.0}), "1:3").name(),
+              "BadIndexRangeNoData");
+    EXPECT_EQ(client_.writePart(speeds, Value::of(std::vector<double>()), "0:4294967295").name(),
+              "BadIndexRangeNoData");
     EXPECT_EQ(client_.writePart(speeds, Value::of(std::vector<std::string>{"a"}), "1"),
               status::kBadTypeMismatch);
     EXPECT_EQ(client_.writePart(id(1), Value::of(std::vector{9.0}), "0").isBad(), true);
     EXPECT_EQ(client_.read(speeds).value, Value::of(std::vector{1.0, 9.0, 3.0}));
+}
+
+// 2^16 * 2^16 * 2^16 * 2^16 is 0 in 64 bits: the stack (1.4.11) took an empty array for that many
+// elements, and read some of them.
+TEST_F(KeptValues, HaveAsManyElementsAsTheirDimensionsSay) {
+    const auto any = id(5);
+    serve();
+    EXPECT_EQ(client_.writeArray(any, 6, {2, 3}), status::kGood);
+    EXPECT_EQ(client_.writePart(any, Value::of(std::vector{9.0}), "1,2"), status::kGood);
+    constexpr std::uint32_t kMany = 65'536;
+    EXPECT_EQ(client_.writeArray(any, 0, {kMany, kMany, kMany, kMany}).name(), "BadOutOfRange");
+    EXPECT_EQ(client_.writeArray(any, 6, {3, 3}).isBad(), true);
+    EXPECT_EQ(client_.writePart(any, Value::of(std::vector{9.0}), "1,2"), status::kGood)
+        << "of the array before";
 }
 
 TEST_F(KeptValues, MayHaveAnyStatusAndTimeFromTheServer) {

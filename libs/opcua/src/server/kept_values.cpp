@@ -3,6 +3,7 @@
 #include <open62541/plugin/nodestore.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "common/guard.hpp"
@@ -77,7 +78,42 @@ bool allows(UA_Byte level, const UA_DataValue& written) {
            (!own_time || (level & UA_ACCESSLEVELMASK_TIMESTAMPWRITE) != 0);
 }
 
+/// Lengths of an array in its dimensions.
+std::span<const UA_UInt32> extentsOf(const UA_Variant& array, const UA_UInt32& length) noexcept {
+    return array.arrayDimensionsSize == 0
+               ? std::span(&length, 1)
+               : std::span(array.arrayDimensions, array.arrayDimensionsSize);
+}
+
+/// Whether an array has as many elements as its dimensions say. The stack (1.4.11) compares their
+/// product modulo 2^64, and looks for elements by it.
+bool fillsItsDimensions(const UA_Variant& value) noexcept {
+    const std::span extents(value.arrayDimensions, value.arrayDimensionsSize);
+    std::size_t product = 1;
+    for (const auto extent : extents) {
+        if (extent == 0 || product > value.arrayLength / extent) {
+            return value.arrayLength == 0 && extent == 0;
+        }
+        product *= extent;
+    }
+    return extents.empty() || product == value.arrayLength;
+}
+
+/// Whether a range lies within an array. Of one that does not, the stack (1.4.11) writes what is
+/// beyond the end.
+bool contains(const UA_Variant& array, const UA_NumericRange& range) noexcept {
+    const auto length = static_cast<UA_UInt32>(array.arrayLength);
+    const auto extents = extentsOf(array, length);
+    const std::span dimensions(range.dimensions, range.dimensionsSize);
+    return std::equal(
+        dimensions.begin(), dimensions.end(), extents.begin(), extents.end(),
+        [](const UA_NumericRangeDimension& part, UA_UInt32 extent) { return part.max < extent; });
+}
+
 UA_StatusCode replaceWhole(UA_DataValue& kept, const UA_DataValue& written) {
+    if (!fillsItsDimensions(written.value)) {
+        return UA_STATUSCODE_BADOUTOFRANGE;
+    }
     Owned<UA_DataValue> copy(UA_TYPES[UA_TYPES_DATAVALUE]);
     const auto code = UA_DataValue_copy(&written, copy.get());
     if (code == UA_STATUSCODE_GOOD) {
@@ -94,6 +130,9 @@ UA_StatusCode replacePart(UA_DataValue& kept, const UA_DataValue& written,
     }
     if (kept.value.type == nullptr || kept.value.type != written.value.type) {
         return UA_STATUSCODE_BADTYPEMISMATCH;
+    }
+    if (!contains(kept.value, range)) {
+        return UA_STATUSCODE_BADINDEXRANGENODATA;
     }
     const auto size = UA_Variant_isScalar(&written.value) ? 1 : written.value.arrayLength;
     const auto code = UA_Variant_setRangeCopy(&kept.value, written.value.data, size, range);
