@@ -199,6 +199,8 @@ private:
     /// Factor by which the jerk may exceed what positions at steps show, if these show too much. A
     /// clock that changes its speed at exactly the jerk limit is not slowed down for it.
     static constexpr double kBetween = 1.03;
+    /// Share of the jerk limit above which steps may hide a peak over it.
+    static constexpr double kPeak = 0.92;
 
     /// Time at which the clock has this value [s].
     double timeAt(double clock) const noexcept {
@@ -267,13 +269,14 @@ private:
     }
 
     /// Differences of positions from one time to another [s], and as far beyond as four of them
-    /// reach; between these again where they come near the jerk limit, since a peak between two
-    /// steps is higher than both show.
+    /// reach; with half the step, and between these again, where they come near the jerk limit,
+    /// since a peak between two steps is higher than both show.
     void includeExact(double from, double to) {
         const double step = std::max((to - from) / kMostSteps,
                                      std::clamp((to - from) / 4, kShortestStep, kLongestStep));
-        if (includeSteps(from, to, step) > 1 / kBetween) {
-            includeSteps(from - step / 2, to + step / 2, step);
+        if (includeSteps(from, to, step) > kPeak) {
+            const double half = std::max(step / 2, kShortestStep);
+            includeSteps(from - half / 2, to + half / 2, half);
         }
     }
 
