@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <set>
 
 #include "bare_client.hpp"
@@ -124,6 +125,35 @@ TEST_F(EventEmitterTest, EveryFieldReachesTheClient) {
     EXPECT_EQ(event[kToState], Value::of(LocalizedText{"en", "Running"}));
     EXPECT_EQ(event[kToStateId], Value::of(NodeId(0, 2400U)));
     EXPECT_EQ(event[kIntermediateResult], Value::of(std::uint32_t{7}));
+}
+
+/// Keeps the processor busy, by the clock of this program's work.
+void work(double seconds) {
+    const auto end = std::clock() + static_cast<std::clock_t>(seconds * CLOCKS_PER_SEC);
+    while (std::clock() < end) {
+    }
+}
+
+// The server refuses to read for a message that takes more than 20 ms; the fields were Null then.
+TEST_F(EventEmitterTest, AMessageThatTakesLongRaisesItsEventsWhole) {
+    std::vector<ReceivedEvent> events;
+    ASSERT_GT(client_.subscribe(100), 0);
+    ASSERT_EQ(client_.watchEvents(kSkill, kSelected, events), status::kGood);
+    const NodeId method(2, "long");
+    ASSERT_TRUE(server_->call([&] {
+        return server_->nodes().addMethod(
+            {.node = {method, kSkill, ids::kHasComponent, {2, "Long"}},
+             .handler = [&](const CallContext&,
+                            std::span<const Value>) -> Result<std::vector<Value>> {
+                 work(0.1);
+                 EXPECT_TRUE(emitter_.emit(transition(7)));
+                 return std::vector<Value>();
+             }});
+    }));
+    ASSERT_EQ(client_.call(kSkill, method, {}).status, status::kGood);
+    ASSERT_TRUE(client_.runUntil([&] { return !events.empty(); }));
+    EXPECT_EQ(events[0][kSourceNode], Value::of(kSkill));
+    EXPECT_EQ(events[0][kIntermediateResult], Value::of(std::uint32_t{7}));
 }
 
 TEST_F(EventEmitterTest, ASubscriptionWithoutASessionHarmsNoServer) {

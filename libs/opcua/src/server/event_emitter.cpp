@@ -114,8 +114,7 @@ Result<ByteString> EventEmitter::emit(const Event& event) {
         METIER_TRY(state_->write(i, value));
     }
     Owned<UA_ByteString> id(UA_TYPES[UA_TYPES_BYTESTRING]);
-    const auto code = UA_Server_triggerEvent(state_->core.native(), viewOf(state_->node),
-                                             viewOf(event.source), id.get(), false);
+    const auto code = state_->core.raise(state_->node, event.source, id.get());
     if (code != UA_STATUSCODE_GOOD) {
         return fail(errorFrom(StatusCode(code), "raise an event of " + event.source.toString()));
     }

@@ -384,6 +384,14 @@ bool ServerCore::nobodyHears(const NodeId& source) const {
     return known != notifiers_.end() && !watch_.watchesAny(known->second);
 }
 
+UA_StatusCode ServerCore::raise(const NodeId& event, const NodeId& source, UA_ByteString* id) {
+    raises_ = true;
+    const auto code =
+        UA_Server_triggerEvent(server_.get(), viewOf(event), viewOf(source), id, false);
+    raises_ = false;
+    return code;
+}
+
 void ServerCore::publishEventsOf(const NodeId& source) {
     const auto& notifiers = notifiersAbove(source);
     if (options_.event_publishing != EventPublishing::at_once || watch_.empty()) {

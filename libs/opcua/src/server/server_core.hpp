@@ -68,7 +68,10 @@ public:
     void publishEventsOf(const NodeId& source);
     /// Whether work on the present message may go on: no client may keep the others waiting with a
     /// message that names the most expensive nodes again and again.
-    bool mayWorkOn() const { return loop_.workOnTurn() < kLongestWorkOnAMessage; }
+    bool mayWorkOn() const { return raises_ || loop_.workOnTurn() < kLongestWorkOnAMessage; }
+    /// Raises the event of a node: its subscribers read its fields whatever the message took that
+    /// it is a part of.
+    UA_StatusCode raise(const NodeId& event, const NodeId& source, UA_ByteString* id);
     Result<> renewIdentity(const security::Identity& identity);
     /// A session called what its role does not allow.
     void tellDenial(const CallContext& context);
@@ -117,6 +120,7 @@ private:
     std::shared_ptr<PendingTimers> timers_;  ///< shared for the weak pointers of handles
     AuditTrail audit_;
     WorkQueue queue_;
+    bool raises_ = false;  ///< an event
     std::atomic<std::uint16_t> port_{0};
     /// For those who must not wait for the thread that counts.
     struct Figures {
