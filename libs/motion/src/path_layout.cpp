@@ -6,9 +6,6 @@ namespace metier::motion {
 
 namespace {
 
-/// A smaller corner is lost in the rounding of joint positions [m].
-constexpr double kLeastBlendRadius = 1e-9;
-
 tl::unexpected<Refusal> atWaypoint(const PathRequest& request, std::size_t index, Refusal refusal) {
     refusal.error.message = fmt::format("waypoint {}: {}", index + 1, refusal.error.message);
     refusal.fraction =
@@ -24,15 +21,16 @@ Checked refuseCorner(const ToolPath& path, const Pose& corner, const Pose& targe
     if (same) {
         return invalid("the next waypoint is the same pose: no line leads there");
     }
-    if (radius < kLeastBlendRadius) {
-        return invalid(fmt::format("blend radius {} m under {} m: no arm could follow the corner",
-                                   radius, kLeastBlendRadius),
+    const auto [least, most] = path.blendRange(target);
+    if (radius < least) {
+        return invalid(fmt::format("blend radius {} m under {:.3g} m: no arm could show the corner",
+                                   radius, least),
                        Errc::out_of_range);
     }
-    if (const double limit = path.blendLimit(target); radius > limit + rounding) {
+    if (radius > most + rounding) {
         return invalid(
             fmt::format("blend radius {} m over {:.4f} m, half of the shorter line beside it",
-                        radius, limit),
+                        radius, most),
             Errc::out_of_range);
     }
     return {};

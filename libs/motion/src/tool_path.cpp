@@ -98,12 +98,15 @@ void ToolPath::appendLine(const Pose& start, const Pose& target) {
     pieces_.push_back(piece);
 }
 
-double ToolPath::blendLimit(const Pose& target) const noexcept {
+ToolPath::BlendRange ToolPath::blendRange(const Pose& target) const noexcept {
+    constexpr double least_radius = 1e-9;
+    constexpr double least_length = 1e-6;
     const Piece& from = pieces_.back();
     const Piece to = lineBetween(end_, target);
     const double fastest = std::max(from.in.velocity.norm(), to.in.velocity.norm());
-    return from.whole > 0 && fastest > 0 ? 0.5 * std::min(from.whole, to.whole) * fastest
-                                         : std::numeric_limits<double>::infinity();
+    return {std::max(least_radius, least_length * fastest),
+            from.whole > 0 && fastest > 0 ? 0.5 * std::min(from.whole, to.whole) * fastest
+                                          : std::numeric_limits<double>::infinity()};
 }
 
 void ToolPath::append(const Pose& target, double blend_radius) {

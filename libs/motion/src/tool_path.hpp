@@ -29,10 +29,17 @@ public:
     /// Goes on in a line to `target`, rounding the corner where it leaves the last one.
     /// \param blend_radius > 0 [m]; no more than blendLimit() is used
     void append(const Pose& target, double blend_radius);
-    /// Largest blend radius of a corner from which a line leads to `target` [m]: half of the
-    /// shorter line, where a turn counts for 0.25 m/rad. Infinite where nothing but the rotation
-    /// changes, or the line before has no length.
-    double blendLimit(const Pose& target) const noexcept;
+    /// Blend radii of a corner [m].
+    struct BlendRange {
+        double least = 0;
+        double most = 0;
+    };
+    /// Possible blend radii of a corner from which a line leads to `target`. The largest is half of
+    /// the shorter line, where a turn counts for 0.25 m/rad; infinite where nothing but the
+    /// rotation changes, or the line before has no length. With the least, 1e-6 m of that length is
+    /// cut: no arm shows a smaller corner, and the rounding of joint positions hides what it
+    /// accelerates there.
+    BlendRange blendRange(const Pose& target) const noexcept;
 
     bool isPoint() const noexcept { return length_ == 0; }
     /// Sum of all lines [m] and of all rotations [rad].

@@ -146,6 +146,13 @@ TEST(BlendedPath, RefusesAWaypointWithoutABlendRadius) {
     const auto plan = Planner(model).path(request);
     ASSERT_FALSE(plan);
     EXPECT_THAT(plan.error().error.message, HasSubstr("waypoint 1: blend radius 0 m"));
+    request.waypoints[0].blend_radius = 0.9e-6;
+    const auto tiny = Planner(model).path(request);
+    ASSERT_FALSE(tiny);
+    EXPECT_THAT(tiny.error().error.message,
+                HasSubstr("blend radius 9e-07 m under 1e-06 m: no arm could show the corner"));
+    request.waypoints[0].blend_radius = 1.1e-6;
+    EXPECT_TRUE(Planner(model).path(request));
     request.waypoints.clear();
     EXPECT_FALSE(Planner(model).path(request));
 }

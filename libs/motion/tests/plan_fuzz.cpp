@@ -148,8 +148,9 @@ PathRequest PlanFuzz::anyPath() {
             fastest = std::max(fastest, way / std::max(length, 1e-300));
         }
         const double share = oneOf(3) ? 1 : anySize(1e-6, 1);
+        constexpr double least = 1.001e-6;  // a smaller corner is refused
         request.waypoints[static_cast<std::size_t>(i)].blend_radius =
-            fastest > 0 ? 0.5 * share * shorter * fastest : anySize(1e-6, 0.1);
+            fastest > 0 ? std::max(0.5 * share * shorter, least) * fastest : anySize(1e-6, 0.1);
     }
     return request;
 }

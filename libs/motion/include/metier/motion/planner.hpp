@@ -93,9 +93,9 @@ struct JointLinearRequest {
 struct PathWaypoint {
     /// Pose of the tool frame here, with a unit quaternion.
     Pose target;
-    /// Distance by which the corner here may be cut [m]: 1e-9 m or more, at most half of the
-    /// shorter line beside it, where a rotation counts as 0.25 m/rad. Not used for the last
-    /// waypoint.
+    /// Distance by which the corner here may be cut [m]: 1e-6 m or more (less where the tool frame
+    /// turns more than it moves), at most half of the shorter line beside it, where a rotation
+    /// counts as 0.25 m/rad. Not used for the last waypoint.
     double blend_radius = 0;
     /// Limit on the way to here [m/s]; 0: as the whole path.
     double max_velocity = 0;
