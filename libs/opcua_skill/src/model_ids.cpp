@@ -37,6 +37,16 @@ const SubStateRow* rowOf(skill::SubState sub_state) {
 
 const opcua::NodeId kFiniteStateMachineType{0, 2771U};
 
+/// A state of FinishStateMachineType; null if the server does not have that type.
+opcua::NodeId finishState(const opcua::AddressSpace& nodes, const std::string& name) {
+    const auto robotics = nodes.namespaceIndex(kRoboticsUri);
+    const auto machine = robotics ? typeDirectlyBelow(nodes, kFiniteStateMachineType,
+                                                      {*robotics, "FinishStateMachineType"})
+                                  : fail(robotics.error());
+    const auto state = machine ? nodes.find(*machine, {*robotics, name}) : machine;
+    return state.value_or(opcua::NodeId());
+}
+
 }  // namespace
 
 opcua::NodeId stateId(skill::State state) {
@@ -82,6 +92,8 @@ Result<ModelIds> ModelIds::of(const opcua::AddressSpace& nodes) {
                       nodes.find(machine, {*metier, std::string(skill::toString(row.sub_state))}));
         ids.sub_states.emplace(row.sub_state, state);
     }
+    ids.success = finishState(nodes, "Success");
+    ids.force_exceeded = finishState(nodes, "ForceExceeded");
     return ids;
 }
 

@@ -30,6 +30,9 @@ struct ModelIds {
     opcua::NodeId skill_type;
     opcua::NodeId transition_event_type;
     std::map<skill::SubState, opcua::NodeId> sub_states;
+    /// States of FinishStateMachineType; null where the server does not have it.
+    opcua::NodeId success;
+    opcua::NodeId force_exceeded;
 
     /// Errors: not_found, naming what the server's NodeSets lack.
     static Result<ModelIds> of(const opcua::AddressSpace& nodes);

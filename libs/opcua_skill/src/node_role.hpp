@@ -26,6 +26,9 @@ enum class NodeKind : std::uint8_t {
     sub_state,  ///< detail, also of the next two: the skill::State that it belongs to
     sub_state_id,
     sub_state_number,
+    finish,  ///< how the last execution ended, by FinishStateMachineType
+    finish_id,
+    finish_number,
     parameter,       ///< detail: Part
     parameter_unit,  ///< detail: Part
     parameter_range,

@@ -26,6 +26,9 @@ using opcua::Value;
 
 constexpr std::size_t kLongestParent = 256;
 constexpr std::uint16_t kInformation = 100;  // severity
+/// Numbers of the states of FinishStateMachineType (published 2020).
+constexpr std::uint32_t kForceExceeded = 8;
+constexpr std::uint32_t kSuccess = 9;
 
 template <typename Name>
 LocalizedText textOf(Name name) {
@@ -36,6 +39,14 @@ const skill::Field& fieldOf(const skill::Program& program, NodeRole node_role) {
     const auto& description = program.description();
     return (isOfResult(node_role.kind) ? description.results
                                        : description.parameters)[node_role.field];
+}
+
+/// Whether a force over its limit ended the execution that has this result.
+bool metForce(const skill::ValueMap& result) {
+    const auto found = result.find("ForcesExceeded");
+    const auto* force =
+        found == result.end() ? nullptr : std::get_if<skill::Vector3>(&found->second);
+    return force != nullptr && *force != skill::Vector3{};
 }
 
 /// A NodeRole fits into the tag of its Variable.
@@ -172,6 +183,10 @@ DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
         case NodeKind::sub_state_id:
         case NodeKind::sub_state_number:
             return readSubState(node_role);
+        case NodeKind::finish:
+        case NodeKind::finish_id:
+        case NodeKind::finish_number:
+            return readFinish(node_role);
         case NodeKind::parameter:
             return {readParameter(node_role)};
         case NodeKind::result:
@@ -252,6 +267,29 @@ DataValue SkillNode::readSubState(NodeRole node_role) const {
             return {Value::of(active ? numberOf(sub_state) : 0U), status};
         default:
             return {Value::of(active ? textOf(sub_state) : LocalizedText()), status};
+    }
+}
+
+DataValue SkillNode::readFinish(NodeRole node_role) const {
+    const auto& last = program_->lastTransition();
+    const bool finished = last && last->number == skill::TransitionNumber::running_to_ready;
+    const bool halted_by_force = program_->subState() == skill::SubState::halted_force;
+    const bool active = finished || halted_by_force;
+    const bool by_force = halted_by_force || metForce(program_->finalResult());
+    const auto status = active ? opcua::StatusCode() : opcua::status::kBadStateNotActive;
+    const auto of = [&](auto success, auto exceeded) {
+        const auto& state = by_force ? exceeded : success;
+        return active ? state : decltype(success)();
+    };
+    switch (node_role.kind) {
+        case NodeKind::finish_id:
+            return {Value::of(of(context_.ids.success, context_.ids.force_exceeded)), status};
+        case NodeKind::finish_number:
+            return {Value::of(of(kSuccess, kForceExceeded)), status};
+        default:
+            return {
+                Value::of(of(LocalizedText{"en", "Success"}, LocalizedText{"en", "ForceExceeded"})),
+                status};
     }
 }
 

@@ -105,6 +105,8 @@ private:
     /// BadNoData before the first transition.
     opcua::DataValue readTransition(NodeRole node_role) const;
     opcua::DataValue readSubState(NodeRole node_role) const;
+    /// BadStateNotActive but in Ready after an execution that finished, and in Halted by a force.
+    opcua::DataValue readFinish(NodeRole node_role) const;
     opcua::Value readParameter(NodeRole node_role) const;
     /// BadNoData before the first finished execution, and for a result that the last one lacks.
     opcua::DataValue readResult(NodeRole node_role) const;

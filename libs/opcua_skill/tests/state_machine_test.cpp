@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "metier/robot_skills/move_parameters.hpp"
 #include "served_skills.hpp"
 
 namespace metier::opcua_skill::testing {
@@ -190,6 +191,76 @@ TEST_F(StateMachine, InactiveSubStatesAnswerBadStateNotActive) {
     EXPECT_EQ(readAs<opcua::LocalizedText>(*client_, skill_, "HaltedSubStates/CurrentState").text,
               "HaltedByClient");
     EXPECT_EQ(readAs<std::uint32_t>(*client_, skill_, "HaltedSubStates/CurrentState/Number"), 111U);
+}
+
+/// A force move: its type has a state machine of how it ended.
+class ForceMove : public ServedSkills {
+protected:
+    static skill::SkillDescription description() {
+        auto description = linearMoveDescription();
+        description.name = "CartesianLinearForceMoveSkill";
+        description.type = "CartesianLinearForceMoveSkillType";
+        auto parameters = description.parameters.toVector();
+        parameters.front().default_value = skill::Frame{0, 0, 1, 0, 0, 0};
+        description.parameters = std::move(parameters);
+        auto results = robot_skills::forceMoveResultFields().fields();
+        for (auto& result : results) {
+            result.place = skill::Place::final_result;
+        }
+        description.results = std::move(results);
+        return description;
+    }
+    ForceMove() : skill_(add(description())) {
+        serve();
+        client_ = connect();
+        watch_ = std::make_unique<TransitionWatch>(*client_, skill_.id);
+    }
+    void start() {
+        ASSERT_EQ(call(*client_, skill_, "Start"), "Good");
+        ASSERT_EQ(watch_->nextName(), "ReadyToRunning");
+        ASSERT_TRUE(skill_.hand->await("start"));
+    }
+    std::string finish() { return read(*client_, skill_, "FinishStateMachine/CurrentState"); }
+    std::string text() {
+        return readAs<opcua::LocalizedText>(*client_, skill_, "FinishStateMachine/CurrentState")
+            .text;
+    }
+    opcua::NodeId id() {
+        return readAs<opcua::NodeId>(*client_, skill_, "FinishStateMachine/CurrentState/Id");
+    }
+
+    ServedSkill skill_;
+    std::unique_ptr<opcua::Client> client_;
+    std::unique_ptr<TransitionWatch> watch_;
+};
+
+TEST_F(ForceMove, TellsWhetherAForceEndedIt) {
+    EXPECT_EQ(finish(), "BadStateNotActive");
+    start();
+    EXPECT_EQ(finish(), "BadStateNotActive");
+    skill_.hand->execution().finish({{"ForcesExceeded", skill::Vector3{}}});
+    ASSERT_EQ(watch_->nextName(), "RunningToReady");
+    const auto success = id();
+    EXPECT_EQ(text(), "Success");
+    EXPECT_EQ(success, opcua::NodeId(success.namespaceIndex(), 16106U));
+    start();
+    skill_.hand->execution().finish({{"ForcesExceeded", skill::Vector3{0, 0, 21}}});
+    ASSERT_EQ(watch_->nextName(), "RunningToReady");
+    EXPECT_EQ(text(), "ForceExceeded");
+    EXPECT_EQ(id(), opcua::NodeId(success.namespaceIndex(), 16105U));
+}
+
+TEST_F(ForceMove, ThatHaltsOnAForceTellsSo) {
+    start();
+    skill_.hand->execution().fail(skill::Reason::force_exceeded, "21 N over 20 N");
+    ASSERT_EQ(watch_->nextName(), "RunningToHalted");
+    EXPECT_EQ(text(), "ForceExceeded");
+    ASSERT_EQ(call(*client_, skill_, "Reset"), "Good");
+    ASSERT_EQ(watch_->nextName(), "HaltedToReady");
+    EXPECT_EQ(finish(), "BadStateNotActive");
+    ASSERT_EQ(call(*client_, skill_, "Halt"), "Good");
+    ASSERT_EQ(watch_->nextName(), "ReadyToHalted");
+    EXPECT_EQ(finish(), "BadStateNotActive");
 }
 
 TEST_F(StateMachine, AnErrorHaltsWithItsReason) {
