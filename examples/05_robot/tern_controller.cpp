@@ -52,7 +52,7 @@ public:
 
     Result<void> listen(const ControllerRequest& request, std::uint16_t port) {
         auto server = TcpServer::listen(
-            request.context, request.address, port, request.faults,
+            request.context, {request.address, port}, request.faults,
             {.on_connected = {},
              .on_data =
                  [this](TcpPeer& peer, auto bytes) {

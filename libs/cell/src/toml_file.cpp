@@ -349,24 +349,28 @@ Settings TomlTable::settings(std::initializer_list<std::string_view> taken) cons
     if (impl_->table == nullptr) {
         return {};
     }
+    const auto take = [&](const std::string& name, const std::string& below, const toml::node& node,
+                          std::string_view why) {
+        if (auto value = settingOf(node)) {
+            values.emplace(name + below, std::move(*value));
+        } else {
+            reject(name, why);
+        }
+    };
     for (const auto& [key, node] : *impl_->table) {
         const std::string name(key.str());
         if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
             continue;
         }
         impl_->asked.insert(name);
-        if (const auto* inner = node.as_table()) {
-            for (const auto& [inner_key, inner_node] : *inner) {
-                if (auto value = settingOf(inner_node)) {
-                    values.emplace(name + "." + std::string(inner_key.str()), std::move(*value));
-                } else {
-                    reject(name, "holds a value that is no number, text, flag or list of numbers");
-                }
-            }
-        } else if (auto value = settingOf(node)) {
-            values.emplace(name, std::move(*value));
-        } else {
-            reject(name, "is no finite number, text, flag or list of finite numbers");
+        const auto* inner = node.as_table();
+        if (inner == nullptr) {
+            take(name, "", node, "is no finite number, text, flag or list of finite numbers");
+            continue;
+        }
+        for (const auto& [inner_key, inner_node] : *inner) {
+            take(name, "." + std::string(inner_key.str()), inner_node,
+                 "holds a value that is no number, text, flag or list of numbers");
         }
     }
     return Settings(fmt::format("{}: {}", place(), impl_->path), std::move(values));

@@ -30,26 +30,33 @@ bool waitReadable(int descriptor, SteadyTime deadline) {
     return pollUntil(descriptor, POLLIN, deadline, "a child process").has_value();
 }
 
+/// What a child that becomes a program has of its parent.
+struct OfParent {
+    pid_t owner = 0;   ///< the parent
+    int output = -1;   ///< pipe for what the program prints
+    int failure = -1;  ///< pipe for the error if there is no such program
+};
+
 /// Runs in the child between fork and exec: only async-signal-safe calls.
-[[noreturn]] void becomeProgram(char* const* arguments, int output, const ChildOptions& options,
-                                pid_t owner, int failure) {
+[[noreturn]] void becomeProgram(char* const* arguments, const ChildOptions& options,
+                                const OfParent& parent) {
     if (options.group == Group::own) {
         setpgid(0, 0);
     }
     prctl(PR_SET_PDEATHSIG, options.on_owners_death);
-    if (getppid() != owner) {  // it died before the kernel knew whom to signal
+    if (getppid() != parent.owner) {  // it died before the kernel knew whom to signal
         _exit(kSignalBase + options.on_owners_death);
     }
-    dup2(output, STDOUT_FILENO);
+    dup2(parent.output, STDOUT_FILENO);
     if (options.error_output == ErrorOutput::with_output) {
-        dup2(output, STDERR_FILENO);
+        dup2(parent.output, STDERR_FILENO);
     }
     sigset_t none;
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, nullptr);
     execvp(arguments[0], arguments);
     const int error = errno;
-    [[maybe_unused]] const auto written = write(failure, &error, sizeof error);
+    [[maybe_unused]] const auto written = write(parent.failure, &error, sizeof error);
     _exit(127);
 }
 
@@ -84,7 +91,7 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command
     const pid_t owner = getpid();
     const pid_t pid = fork();
     if (pid == 0) {
-        becomeProgram(arguments.data(), output->write_end, options, owner, failure->write_end);
+        becomeProgram(arguments.data(), options, {owner, output->write_end, failure->write_end});
     }
     close(output->write_end);
     close(failure->write_end);

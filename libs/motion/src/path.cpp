@@ -31,17 +31,18 @@ Weights weightsOf(const std::array<double, kStencil>& places) noexcept {
     double before = 1;
     for (std::size_t n = 1; n < kStencil; ++n) {
         double product = 1;
+        for (std::size_t v = 0; v < n; ++v) {
+            product *= places[n] - places[v];
+        }
         const std::size_t highest = std::min<std::size_t>(n, 3);
+        const std::size_t last = n - 1;
+        for (std::size_t d = highest; d > 0; --d) {
+            w[d][n] = before / product *
+                      (static_cast<double>(d) * w[d - 1][last] - places[last] * w[d][last]);
+        }
+        w[0][n] = -before / product * places[last] * w[0][last];
         for (std::size_t v = 0; v < n; ++v) {
             const double distance = places[n] - places[v];
-            product *= distance;
-            if (v + 1 == n) {
-                for (std::size_t d = highest; d > 0; --d) {
-                    w[d][n] = before / product *
-                              (static_cast<double>(d) * w[d - 1][v] - places[v] * w[d][v]);
-                }
-                w[0][n] = -before / product * places[v] * w[0][v];
-            }
             for (std::size_t d = highest; d > 0; --d) {
                 w[d][v] = (places[n] * w[d][v] - static_cast<double>(d) * w[d - 1][v]) / distance;
             }

@@ -35,4 +35,11 @@ struct ChainEnds {
 /// \return nothing if an error was noted
 std::optional<ChainChoice> chooseChain(XmlFile& file, const RobotTree& tree, const ChainEnds& ends);
 
+/// A chosen chain, the file that it is in, and the file's tree. Refers to all three.
+struct ChosenChain {
+    XmlFile& file;
+    const RobotTree& tree;
+    const ChainChoice& choice;
+};
+
 }  // namespace metier::robot_files

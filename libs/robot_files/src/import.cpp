@@ -186,17 +186,18 @@ motion::RobotAppearance Importer::names() {
 Result<Importer::Read> Importer::read(const ChainChoice& choice) {
     const auto taken = options_.round_angles ? Angles::rounded : Angles::as_written;
     const auto other = options_.round_angles ? Angles::as_written : Angles::rounded;
+    const ChosenChain chain{file_, tree_, choice};
     Read read;
     read.appearance = names();
-    read.chain.joints = readAxes(file_, tree_, choice, options_, assumed_);
-    const auto frames = readFrames(file_, tree_, choice, taken);
+    read.chain.joints = readAxes(chain, options_, assumed_);
+    const auto frames = readFrames(chain, taken);
     read.chain = withFrames(std::move(read.chain), frames);
-    read.other_frames = readFrames(file_, tree_, choice, other);
-    const auto groups = groupLinks(file_, tree_, choice, taken);
-    read.chain.tools = readTools(file_, tree_, choice, taken, left_out_);
-    readShapes(file_, tree_, groups, read.appearance, left_out_);
+    read.other_frames = readFrames(chain, other);
+    const auto groups = groupLinks(chain, taken);
+    read.chain.tools = readTools(chain, taken, left_out_);
+    readShapes(chain, groups, read.appearance, left_out_);
     METIER_TRY(file_.finish());
-    for (auto& text : jointsBeside(file_, tree_, choice, groups)) {
+    for (auto& text : jointsBeside(chain, groups)) {
         left_out_.push_back(std::move(text));
     }
     if (semantics_ != nullptr) {

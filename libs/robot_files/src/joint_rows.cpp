@@ -139,10 +139,10 @@ void tell(const std::vector<std::string>& joints, std::size_t all, const std::st
 
 }  // namespace
 
-std::vector<motion::JointDescription> readAxes(XmlFile& file, const RobotTree& tree,
-                                               const ChainChoice& choice,
+std::vector<motion::JointDescription> readAxes(const ChosenChain& chain,
                                                const ImportOptions& options,
                                                std::vector<std::string>& assumed) {
+    const auto& [file, tree, choice] = chain;
     LimitReader limits(file, options);
     std::vector<motion::JointDescription> axes;
     for (std::size_t i = 0; i < choice.axes.size(); ++i) {
@@ -160,8 +160,8 @@ std::vector<motion::JointDescription> readAxes(XmlFile& file, const RobotTree& t
     return axes;
 }
 
-ChainFrames readFrames(XmlFile& file, const RobotTree& tree, const ChainChoice& choice,
-                       Angles angles) {
+ChainFrames readFrames(const ChosenChain& chain, Angles angles) {
+    const auto& [file, tree, choice] = chain;
     constexpr double shortest = 1e-6;
     ChainFrames frames;
     motion::Pose pose;

@@ -16,8 +16,7 @@ enum class Angles { as_written, rounded };
 /// The axes of a chain with their limits. Notes errors in the file, such as limits that neither the
 /// file nor the options give.
 /// \param assumed gets a line for each kind of value that nobody gave
-std::vector<motion::JointDescription> readAxes(XmlFile& file, const RobotTree& tree,
-                                               const ChainChoice& choice,
+std::vector<motion::JointDescription> readAxes(const ChosenChain& chain,
                                                const ImportOptions& options,
                                                std::vector<std::string>& assumed);
 
@@ -28,7 +27,6 @@ struct ChainFrames {
     motion::Pose last_from_flange;
 };
 /// Notes errors in the file.
-ChainFrames readFrames(XmlFile& file, const RobotTree& tree, const ChainChoice& choice,
-                       Angles angles);
+ChainFrames readFrames(const ChosenChain& chain, Angles angles);
 
 }  // namespace metier::robot_files

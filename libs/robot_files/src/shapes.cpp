@@ -253,8 +253,8 @@ struct PairCount {
 
 }  // namespace
 
-LinkGroups groupLinks(XmlFile& file, const RobotTree& tree, const ChainChoice& choice,
-                      Angles angles) {
+LinkGroups groupLinks(const ChosenChain& chain, Angles angles) {
+    const auto& [file, tree, choice] = chain;
     LinkGroups groups;
     for (std::size_t number = 0; number <= choice.axes.size(); ++number) {
         const auto first = number == 0 ? choice.base : tree.joints()[choice.axes[number - 1]].child;
@@ -273,20 +273,20 @@ LinkGroups groupLinks(XmlFile& file, const RobotTree& tree, const ChainChoice& c
     return groups;
 }
 
-void readShapes(XmlFile& file, const RobotTree& tree, const LinkGroups& groups,
+void readShapes(const ChosenChain& chain, const LinkGroups& groups,
                 motion::RobotAppearance& appearance, std::vector<std::string>& left_out) {
-    ShapeReader reader(file, appearance);
+    ShapeReader reader(chain.file, appearance);
     for (std::size_t number = 0; number < groups.size(); ++number) {
         for (const auto& held : groups[number]) {
-            reader.read(number, tree.links()[held.link].element, held.frame_from_link);
+            reader.read(number, chain.tree.links()[held.link].element, held.frame_from_link);
         }
     }
     reader.finish(left_out);
 }
 
-std::vector<motion::ToolFrame> readTools(XmlFile& file, const RobotTree& tree,
-                                         const ChainChoice& choice, Angles angles,
+std::vector<motion::ToolFrame> readTools(const ChosenChain& chain, Angles angles,
                                          std::vector<std::string>& left_out) {
+    const auto& [file, tree, choice] = chain;
     std::vector<motion::ToolFrame> tools;
     std::map<std::size_t, Pose> places{{choice.tip, Pose::identity()}};
     for (const auto link : tree.heldBy(choice.tip)) {
@@ -344,8 +344,8 @@ std::vector<motion::UncomparedLinks> readUncompared(const RobotTree& tree, const
     return pairs;
 }
 
-std::vector<std::string> jointsBeside(const XmlFile& file, const RobotTree& tree,
-                                      const ChainChoice& choice, const LinkGroups& groups) {
+std::vector<std::string> jointsBeside(const ChosenChain& chain, const LinkGroups& groups) {
+    const auto& [file, tree, choice] = chain;
     std::vector<std::string> texts;
     for (const auto& group : groups) {
         for (const auto& held : group) {

@@ -22,19 +22,17 @@ struct HeldLink {
 using LinkGroups = std::vector<std::vector<HeldLink>>;
 
 /// Notes errors in the file.
-LinkGroups groupLinks(XmlFile& file, const RobotTree& tree, const ChainChoice& choice,
-                      Angles angles);
+LinkGroups groupLinks(const ChosenChain& chain, Angles angles);
 
 /// Capsules from collision elements, and shapes to draw from visual elements. A sphere, a cylinder
 /// or a box becomes the capsule around it. Notes errors in the file.
 /// \param left_out gets a line for what has no place in a model, such as meshes
-void readShapes(XmlFile& file, const RobotTree& tree, const LinkGroups& groups,
+void readShapes(const ChosenChain& chain, const LinkGroups& groups,
                 motion::RobotAppearance& appearance, std::vector<std::string>& left_out);
 
 /// Tool frames: the links that fixed joints hold to the tip.
 /// \param left_out gets a line for each link whose name no tool can have
-std::vector<motion::ToolFrame> readTools(XmlFile& file, const RobotTree& tree,
-                                         const ChainChoice& choice, Angles angles,
+std::vector<motion::ToolFrame> readTools(const ChosenChain& chain, Angles angles,
                                          std::vector<std::string>& left_out);
 
 /// Pairs of links of the model that would be compared, and whose links in the file are all disabled
@@ -45,7 +43,6 @@ std::vector<motion::UncomparedLinks> readUncompared(const RobotTree& tree, const
                                                     std::vector<std::string>& remarks);
 
 /// Lines about joints beside the chain, which are left out with everything behind them.
-std::vector<std::string> jointsBeside(const XmlFile& file, const RobotTree& tree,
-                                      const ChainChoice& choice, const LinkGroups& groups);
+std::vector<std::string> jointsBeside(const ChosenChain& chain, const LinkGroups& groups);
 
 }  // namespace metier::robot_files

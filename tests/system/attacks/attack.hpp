@@ -42,7 +42,7 @@ struct AttackOrder {
 
 std::vector<std::string> argumentsOf(const AttackOrder& order);
 /// Throws if they are not those of an order.
-AttackOrder orderFrom(const std::vector<std::string>& arguments);
+AttackOrder attackOrderFrom(const std::vector<std::string>& arguments);
 
 /// Result of an attack so far.
 struct AttackCount {

@@ -44,7 +44,7 @@ std::vector<std::string> argumentsOf(const AttackOrder& order) {
     return arguments;
 }
 
-AttackOrder orderFrom(const std::vector<std::string>& arguments) {
+AttackOrder attackOrderFrom(const std::vector<std::string>& arguments) {
     const auto name = std::find(kNames.begin(), kNames.end(), arguments.at(0));
     if (arguments.size() < kFixed || name == kNames.end()) {
         throw std::invalid_argument("ATTACK HOST PORT SECONDS NAMESPACE STRANGER SKILL...");

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     const sched_param usual{};
     sched_setscheduler(0, SCHED_OTHER, &usual);
     try {
-        const auto order = orderFrom({argv + 1, argv + argc});
+        const auto order = attackOrderFrom({argv + 1, argv + argc});
         const auto count = carryOut(order, [&end] {
             const timespec at_once{};
             return ::sigtimedwait(&end, nullptr, &at_once) == SIGTERM;

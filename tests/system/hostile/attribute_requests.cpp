@@ -8,8 +8,6 @@ namespace metier::hostile {
 
 namespace {
 
-constexpr std::uint32_t kValueAttribute = 13;
-
 std::uint32_t anyAttribute(Random& random) {
     return random.oneIn(3) ? static_cast<std::uint32_t>(random.below(30)) : kValueAttribute;
 }

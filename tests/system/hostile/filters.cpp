@@ -10,7 +10,6 @@ namespace metier::hostile {
 namespace {
 
 constexpr std::uint32_t kBaseEventType = 2041;
-constexpr std::uint32_t kValueAttribute = 13;
 constexpr std::size_t kOperators = 18;
 
 void writeSimpleOperand(Writer& writer) {

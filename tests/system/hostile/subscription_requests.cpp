@@ -9,7 +9,6 @@ namespace metier::hostile {
 
 namespace {
 
-constexpr std::uint32_t kValueAttribute = 13;
 constexpr std::uint32_t kEventNotifier = 12;
 
 void writeParameters(Writer& writer, const Known& known) {

@@ -10,6 +10,9 @@
 
 namespace metier::hostile {
 
+/// Number of the attribute Value.
+inline constexpr std::uint32_t kValueAttribute = 13;
+
 /// Bytes of the OPC UA Binary encoding (OPC 10000-6, 5.2).
 using Bytes = std::string;
 

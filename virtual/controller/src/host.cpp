@@ -60,7 +60,7 @@ Result<std::unique_ptr<Host>> Host::start(HostOptions options,
     METIER_ASSIGN(
         host->control_,
         TcpServer::listen(
-            host->context_, options.address, options.control_port, host->no_faults_,
+            host->context_, {options.address, options.control_port}, host->no_faults_,
             {.on_connected = {},
              .on_data =
                  [self = host.get()](TcpPeer& peer, auto bytes) {

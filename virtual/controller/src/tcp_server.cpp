@@ -60,16 +60,16 @@ Result<asio::ip::address> parseAddress(const std::string& text) {
     return address;
 }
 
-Result<std::unique_ptr<TcpServer>> TcpServer::listen(asio::io_context& context,
-                                                     const std::string& address, std::uint16_t port,
+Result<std::unique_ptr<TcpServer>> TcpServer::listen(asio::io_context& context, const Place& place,
                                                      LinkFaults& faults, Handlers handlers) {
-    const auto name = fmt::format("{}:{}", address, port);
-    METIER_ASSIGN(const auto parsed, parseAddress(address));
+    const auto name = fmt::format("{}:{}", place.address, place.port);
+    METIER_ASSIGN(const auto parsed, parseAddress(place.address));
     asio::error_code error;
     tcp::acceptor acceptor(context);
-    acceptor.open(tcp::endpoint(parsed, port).protocol(), error);
+    const tcp::endpoint endpoint(parsed, place.port);
+    acceptor.open(endpoint.protocol(), error);
     acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-    acceptor.bind(tcp::endpoint(parsed, port), error);
+    acceptor.bind(endpoint, error);
     if (!error) {
         acceptor.listen(tcp::acceptor::max_listen_connections, error);
     }

@@ -54,7 +54,7 @@ private:
 };
 
 Result<std::unique_ptr<Controller>> startSocket(const ControllerRequest& request) {
-    return TcpServer::listen(request.context, request.address, 0, request.faults, {})
+    return TcpServer::listen(request.context, {request.address, 0}, request.faults, {})
         .transform([](auto port) -> std::unique_ptr<Controller> {
             return std::make_unique<Socket>(std::move(port));
         });

@@ -25,7 +25,7 @@ SteadyTime in(std::chrono::milliseconds time) {
 class Echo {
 public:
     Echo() {
-        server_ = TcpServer::listen(context_, "127.0.0.1", 0, faults,
+        server_ = TcpServer::listen(context_, {"127.0.0.1", 0}, faults,
                                     {.on_connected = [this](TcpPeer&) { ++connected; },
                                      .on_data = [](TcpPeer& peer, auto bytes) { peer.send(bytes); },
                                      .on_closed = [this](TcpPeer&) { ++closed; }})
@@ -199,7 +199,7 @@ TEST(TcpServer, TakesNoPeerOnceItIsGone) {
     LinkFaults faults;
     int connected = 0;
     std::unique_ptr<TcpServer> server;
-    server = TcpServer::listen(context, "127.0.0.1", 0, faults,
+    server = TcpServer::listen(context, {"127.0.0.1", 0}, faults,
                                {.on_connected =
                                     [&](TcpPeer&) {
                                         ++connected;
@@ -219,7 +219,7 @@ TEST(TcpServer, TakesNoPeerOnceItIsGone) {
 TEST(TcpServer, RefusesAPortThatIsTaken) {
     Echo echo;
     asio::io_context context;
-    const auto second = TcpServer::listen(context, "127.0.0.1", echo.port, echo.faults, {});
+    const auto second = TcpServer::listen(context, {"127.0.0.1", echo.port}, echo.faults, {});
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, Errc::already_exists);
 }
@@ -228,7 +228,7 @@ TEST(TcpServer, RefusesAnAddressThatIsNotOfThisMachine) {
     asio::io_context context;
     LinkFaults faults;
     for (const auto* address : {"192.0.2.1", "the robot", ""}) {
-        const auto server = TcpServer::listen(context, address, 0, faults, {});
+        const auto server = TcpServer::listen(context, {address, 0}, faults, {});
         ASSERT_FALSE(server) << address;
         EXPECT_EQ(server.error().code, Errc::invalid_argument) << address;
     }

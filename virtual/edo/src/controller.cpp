@@ -62,7 +62,7 @@ public:
         powerOn();
         METIER_ASSIGN(server_,
                       TcpServer::listen(
-                          request.context, request.address, options_.port, request.faults,
+                          request.context, {request.address, options_.port}, request.faults,
                           {.on_connected = [this](TcpPeer& peer) { clients_[&peer]; },
                            .on_data = [this](TcpPeer& peer, auto bytes) { onData(peer, bytes); },
                            .on_closed = [this](TcpPeer& peer) { onClosed(peer); }}));

@@ -176,20 +176,18 @@ Result<Json> MessageTypes::completeObject(std::string_view type, const Json& val
     const std::string prefix = place.field.empty() ? "" : place.field + ".";
     Json whole = defaultOf(type);
     const auto& fields = types_.find(type)->second;
-    for (const auto& [name, member] : value.items()) {
-        if (!whole.contains(name)) {
+    for (const auto& member : value.items()) {
+        const std::string& name = member.key();
+        const auto field = std::find_if(fields.begin(), fields.end(),
+                                        [&](const auto& known) { return known.name == name; });
+        if (field == fields.end()) {
             return fail(Errc::type_mismatch,
                         fmt::format("Message type {} does not have a field {}{}", place.root,
                                     prefix, name));
         }
-        for (const auto& field : fields) {
-            if (field.name == name) {
-                METIER_ASSIGN(auto completed,
-                              completeValue(field.type, member,
-                                            {.root = place.root, .field = prefix + name}));
-                whole[name] = std::move(completed);
-            }
-        }
+        METIER_ASSIGN(auto completed, completeValue(field->type, member.value(),
+                                                    {.root = place.root, .field = prefix + name}));
+        whole[name] = std::move(completed);
     }
     return whole;
 }

@@ -187,7 +187,7 @@ Result<void> NetFtController::open(const ControllerRequest& request) {
 
 Result<void> NetFtController::openWeb(const ControllerRequest& request) {
     return TcpServer::listen(
-               request.context, request.address, options_.http_port, request.faults,
+               request.context, {request.address, options_.http_port}, request.faults,
                {.on_connected = {},
                 .on_data = [this](TcpPeer& peer,
                                   std::span<const std::byte> bytes) { serveWeb(peer, bytes); },

@@ -94,9 +94,9 @@ private:
 Result<void> UrController::start() {
     for (std::size_t i = 0; i < kServices.size(); ++i) {
         const auto name = kServices[i].name;
-        METIER_ASSIGN(auto server, TcpServer::listen(request_.context, request_.address,
-                                                     robot_.options().ports[i], request_.faults,
-                                                     handlersOf(name)));
+        METIER_ASSIGN(auto server, TcpServer::listen(request_.context,
+                                                     {request_.address, robot_.options().ports[i]},
+                                                     request_.faults, handlersOf(name)));
         ports_.push_back({name, std::move(server)});
     }
     const auto period = std::chrono::duration<double>(robot_.options().arm.cycle);

@@ -24,7 +24,7 @@ public:
     explicit WorldServer(WorldOptions options) : options_(options), world_(std::move(options)) {}
 
     Result<void> listen(const ControllerRequest& request, std::uint16_t port) {
-        return TcpServer::listen(request.context, request.address, port, request.faults,
+        return TcpServer::listen(request.context, {request.address, port}, request.faults,
                                  {.on_connected = {},
                                   .on_data =
                                       [this](TcpPeer& peer, auto bytes) {

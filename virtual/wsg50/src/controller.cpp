@@ -119,7 +119,7 @@ void WsgController::switchOn() {
 }
 
 Result<void> WsgController::listen(const ControllerRequest& request) {
-    return TcpServer::listen(request.context, request.address, options_.port, request.faults,
+    return TcpServer::listen(request.context, {request.address, options_.port}, request.faults,
                              {.on_connected = [this](TcpPeer& peer) { connected(peer); },
                               .on_data =
                                   [this](TcpPeer& peer, std::span<const std::byte> bytes) {

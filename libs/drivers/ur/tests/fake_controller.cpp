@@ -239,6 +239,19 @@ void FakeController::accept(std::size_t index, Serve serve, const std::stop_toke
     }
 }
 
+/// Answers the whole messages, and removes them.
+std::vector<std::byte> FakeController::answerAll(std::vector<std::byte>& received) {
+    std::vector<std::byte> out;
+    while (received.size() >= 3 && received.size() >= wordAt(received, 0, 2)) {
+        const auto size = static_cast<std::ptrdiff_t>(wordAt(received, 0, 2));
+        const auto type = std::to_integer<std::uint8_t>(received[2]);
+        const auto reply = answer(type, {received.begin() + 3, received.begin() + size});
+        out.insert(out.end(), reply.begin(), reply.end());
+        received.erase(received.begin(), received.begin() + size);
+    }
+    return out;
+}
+
 void FakeController::serveRtde(link::TcpLink& link, const std::stop_token& stop) {
     std::vector<std::byte> received;
     std::array<std::byte, 4096> chunk{};
@@ -261,13 +274,7 @@ void FakeController::serveRtde(link::TcpLink& link, const std::stop_token& stop)
             }
             received.insert(received.end(), chunk.begin(),
                             chunk.begin() + static_cast<std::ptrdiff_t>(count.value_or(0)));
-            while (received.size() >= 3 && received.size() >= wordAt(received, 0, 2)) {
-                const auto size = static_cast<std::ptrdiff_t>(wordAt(received, 0, 2));
-                const auto type = std::to_integer<std::uint8_t>(received[2]);
-                const auto reply = answer(type, {received.begin() + 3, received.begin() + size});
-                out.insert(out.end(), reply.begin(), reply.end());
-                received.erase(received.begin(), received.begin() + size);
-            }
+            out = answerAll(received);
             if (const auto time = now(); time >= tick) {
                 tick = std::max(tick + kCycle, time + kCycle / 2);
                 if (!ahead()) {

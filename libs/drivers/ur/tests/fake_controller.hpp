@@ -104,6 +104,7 @@ private:
     void serveScript(link::TcpLink& link, const std::stop_token& stop);
     void serveDashboard(link::TcpLink& link, const std::stop_token& stop);
 
+    std::vector<std::byte> answerAll(std::vector<std::byte>& received);
     std::vector<std::byte> answer(std::uint8_t type, const std::vector<std::byte>& payload);
     std::vector<std::byte> setUp(const std::string& names, std::size_t skip, bool outputs);
     void takeInput(const std::vector<std::byte>& payload);

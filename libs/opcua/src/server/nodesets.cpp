@@ -117,17 +117,29 @@ Result<> loadNodesets(UA_Server* server, const std::vector<std::string>& names) 
     return {};
 }
 
+namespace {
+
+/// Names of the compiled NodeSets that a file needs.
+std::vector<std::string> neededBy(const NodesetFile& file) {
+    std::vector<std::string> names;
+    for (const auto& model : file.models()) {
+        for (const auto& required : model.required) {
+            if (const auto name = compiledName(required.uri); !name.empty()) {
+                names.emplace_back(name);
+            }
+        }
+    }
+    return names;
+}
+
+}  // namespace
+
 Result<NodesetFiles> readNodesetFiles(const std::vector<std::filesystem::path>& paths) {
     NodesetFiles read;
     for (const auto& path : paths) {
         METIER_ASSIGN(auto file, NodesetFile::load(path));
-        for (const auto& model : file.models()) {
-            for (const auto& required : model.required) {
-                if (const auto name = compiledName(required.uri); !name.empty()) {
-                    read.needed.emplace_back(name);
-                }
-            }
-        }
+        auto names = neededBy(file);
+        read.needed.insert(read.needed.end(), names.begin(), names.end());
         read.files.push_back(std::move(file));
     }
     return read;

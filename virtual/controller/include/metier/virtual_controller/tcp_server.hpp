@@ -44,7 +44,7 @@ Result<asio::ip::address> parseAddress(const std::string& text);
 
 /// A TCP port of a virtual controller:
 ///
-///     auto port = TcpServer::listen(context, "127.0.1.1", 30004, faults,
+///     auto port = TcpServer::listen(context, {"127.0.1.1", 30004}, faults,
 ///                                   {.on_data = [&](TcpPeer& peer, auto bytes) { ... }});
 ///
 /// Threading: made, used and destroyed on the thread that runs the io_context, whose handlers are
@@ -61,14 +61,17 @@ public:
         std::function<void(TcpPeer&)> on_closed;
     };
 
+    /// Place at which a server listens.
+    struct Place {
+        std::string address;     ///< of this machine; any 127.x.y.z is one
+        std::uint16_t port = 0;  ///< 0: a free one
+    };
+
     /// Opens the port.
     /// \param context must outlive the server
-    /// \param address an address of this machine; any 127.x.y.z is one
-    /// \param port    0: a free one
     /// \param faults  must outlive the server
     /// Errors: invalid_argument, already_exists (port taken), access_denied (port below 1024).
-    static Result<std::unique_ptr<TcpServer>> listen(asio::io_context& context,
-                                                     const std::string& address, std::uint16_t port,
+    static Result<std::unique_ptr<TcpServer>> listen(asio::io_context& context, const Place& place,
                                                      LinkFaults& faults, Handlers handlers);
     virtual ~TcpServer() = default;
 
