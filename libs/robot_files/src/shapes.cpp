@@ -345,22 +345,23 @@ std::vector<motion::UncomparedLinks> readUncompared(const RobotTree& tree, const
 }
 
 std::vector<std::string> jointsBeside(const ChosenChain& chain, const LinkGroups& groups) {
-    const auto& [file, tree, choice] = chain;
     std::vector<std::string> texts;
-    for (const auto& group : groups) {
-        for (const auto& held : group) {
-            for (const auto index : tree.links()[held.link].joints_to_children) {
-                const auto& joint = tree.joints()[index];
-                const bool axis =
-                    std::find(choice.axes.begin(), choice.axes.end(), index) != choice.axes.end();
-                if (!joint.isFixed() && !axis) {
-                    texts.push_back(fmt::format(
-                        "joint \"{}\" ({}{}, line {}) and everything behind it: beside the chain",
-                        joint.name, joint.type, joint.isMimic() ? ", mimic" : "",
-                        file.line(joint.element)));
-                }
+    const auto addThoseOf = [&](const HeldLink& held) {
+        const auto& [file, tree, choice] = chain;
+        for (const auto index : tree.links()[held.link].joints_to_children) {
+            const auto& joint = tree.joints()[index];
+            const bool axis =
+                std::find(choice.axes.begin(), choice.axes.end(), index) != choice.axes.end();
+            if (!joint.isFixed() && !axis) {
+                texts.push_back(fmt::format(
+                    "joint \"{}\" ({}{}, line {}) and everything behind it: beside the chain",
+                    joint.name, joint.type, joint.isMimic() ? ", mimic" : "",
+                    file.line(joint.element)));
             }
         }
+    };
+    for (const auto& group : groups) {
+        std::for_each(group.begin(), group.end(), addThoseOf);
     }
     return texts;
 }

@@ -51,7 +51,7 @@ public:
         std::vector<std::byte> garbage;          ///< sent once instead of a data package
         int skip_cycles = 0;                     ///< so many data packages are left out
         std::vector<std::byte> instead_of_data;  ///< sent in each cycle, if it is not empty
-        std::uint8_t answers_start_as = 'S';     ///< type of the answer to a start
+        char answers_start_as = 'S';             ///< type of the answer to a start
         // dashboard
         std::string remote_control = "true";
         std::string unlock_reply = "Protective stop releasing";
