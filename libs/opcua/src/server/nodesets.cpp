@@ -88,6 +88,19 @@ Result<> load(UA_Server* server, const Nodeset& nodeset) {
         errorFrom(StatusCode(code), fmt::format("load the NodeSet {}", nodeset.name)).message);
 }
 
+/// Names of the compiled NodeSets that a file needs.
+std::vector<std::string> neededBy(const NodesetFile& file) {
+    std::vector<std::string> names;
+    for (const auto& model : file.models()) {
+        for (const auto& required : model.required) {
+            if (const auto name = compiledName(required.uri); !name.empty()) {
+                names.emplace_back(name);
+            }
+        }
+    }
+    return names;
+}
+
 }  // namespace
 
 Result<> checkNodesets(const std::vector<std::string>& names) {
@@ -116,23 +129,6 @@ Result<> loadNodesets(UA_Server* server, const std::vector<std::string>& names) 
     }
     return {};
 }
-
-namespace {
-
-/// Names of the compiled NodeSets that a file needs.
-std::vector<std::string> neededBy(const NodesetFile& file) {
-    std::vector<std::string> names;
-    for (const auto& model : file.models()) {
-        for (const auto& required : model.required) {
-            if (const auto name = compiledName(required.uri); !name.empty()) {
-                names.emplace_back(name);
-            }
-        }
-    }
-    return names;
-}
-
-}  // namespace
 
 Result<NodesetFiles> readNodesetFiles(const std::vector<std::filesystem::path>& paths) {
     NodesetFiles read;

@@ -385,10 +385,10 @@ bool ServerCore::nobodyHears(const NodeId& source) const {
 }
 
 UA_StatusCode ServerCore::raise(const NodeId& event, const NodeId& source, UA_ByteString* id) {
-    raises_ = true;
+    raises_event_ = true;
     const auto code =
         UA_Server_triggerEvent(server_.get(), viewOf(event), viewOf(source), id, false);
-    raises_ = false;
+    raises_event_ = false;
     return code;
 }
 

@@ -68,9 +68,9 @@ public:
     void publishEventsOf(const NodeId& source);
     /// Whether work on the present message may go on: no client may keep the others waiting with a
     /// message that names the most expensive nodes again and again.
-    bool mayWorkOn() const { return raises_ || loop_.workOnTurn() < kLongestWorkOnAMessage; }
-    /// Raises the event of a node: its subscribers read its fields whatever the message took that
-    /// it is a part of.
+    bool mayWorkOn() const { return raises_event_ || loop_.workOnTurn() < kLongestWorkOnAMessage; }
+    /// Raises the event that a node holds. Its fields are read for the subscribers even if the
+    /// present message has used up its time.
     UA_StatusCode raise(const NodeId& event, const NodeId& source, UA_ByteString* id);
     Result<> renewIdentity(const security::Identity& identity);
     /// A session called what its role does not allow.
@@ -120,7 +120,7 @@ private:
     std::shared_ptr<PendingTimers> timers_;  ///< shared for the weak pointers of handles
     AuditTrail audit_;
     WorkQueue queue_;
-    bool raises_ = false;  ///< an event
+    bool raises_event_ = false;  ///< at this moment
     std::atomic<std::uint16_t> port_{0};
     /// For those who must not wait for the thread that counts.
     struct Figures {
