@@ -1,5 +1,5 @@
 // A move component over the position stream of another maker: an arm that publishes no Kinematics and
-// has its axes in another order.
+// has its axes in another order. It moves alone, and together with an arm of metier.
 'use strict';
 
 const assert = require('node:assert');
@@ -15,6 +15,11 @@ const kModel = path.join(__dirname, '..', '..', 'models', 'ur5.toml');
 const kJoints = ['base', 'shoulder', 'elbow', 'wrist_1', 'wrist_2', 'wrist_3'];
 const kHome = [0, -1.3, 1.75, -2.02, -1.57, 0];
 const kAway = [1.2, -1.0, 1.4, -1.8, -1.2, 0.9];
+// A pose of the flange that both arms can reach, in their base frames.
+const kPlace = '0.4,-0.3,0.5,3.14,0,1';
+const kMoveSeconds = 4;
+// One arm of the two has a network, and the machine may be busy.
+const kLargestSkew = 0.5;
 const kObjectsFolder = 'ns=0;i=85';
 const kHierarchicalReferences = 'ns=0;i=33';
 const kDeadlineMs = 30000;
@@ -29,21 +34,22 @@ let component;
 
 after(() => fs.rmSync(folder, { recursive: true }));
 
-/** A cell file with one move component. @param {string[]} lines besides its name, kind and robot */
-function cellOf(lines) {
+/** A cell file with one server. @param {string[]} lines of the server besides its name and kind */
+function cellWith(kind, lines) {
   const file = path.join(folder, `cell${fs.readdirSync(folder).length}.toml`);
   fs.writeFileSync(file, `
 name = "foreign"
 [[server]]
-name = "move"
-kind = "move"
-robot = "${arm.url}"
-stall_limit = 2.0
+name = "${kind}"
+kind = "${kind}"
 ${lines.join('\n')}
 `);
   return file;
 }
 
+const serve = (kind, lines) => startServer(['serve', cellWith(kind, lines), '--server', kind, '--port', '0']);
+/** @param {string[]} lines of a move component besides its robot */
+const cellOf = (lines) => cellWith('move', [`robot = "${arm.url}"`, 'stall_limit = 2.0', ...lines]);
 const startComponent = (lines) => startServer(['serve', cellOf(lines), '--server', 'move', '--port', '0']);
 
 async function startBoth() {
@@ -221,6 +227,49 @@ test('the death of the server halts the move within the told time', async () => 
   assert.match(errors, /LabArm: the connection to \S+ is lost/);
   assert.ok(noticed < kNoticedMs, `after ${noticed} ms`);
   assert.match((await runMetier(['list', component.url])).output, /JointPtpMoveSkill +Halted/);
+});
+
+/** Two arms that move together: ours, and the one of the other maker over its move component. */
+async function withBoth(work) {
+  const ours = await serve('arm', [
+    'driver = { type = "simulator" }', `model = "${kModel}"`,
+    'skills = ["CartesianPtpMoveSkill", "JointPtpMoveSkill"]',
+  ]);
+  try {
+    const both = await serve('synchronized', [`servers = ["${ours.url}", "${component.url}"]`]);
+    try {
+      await work(both, ours);
+    } finally {
+      await both.stop();
+    }
+  } finally {
+    await ours.stop();
+  }
+}
+
+const moveBoth = (url) => runMetier(['run', url, 'SynchronizedMoveSkill', '--json', '--set',
+  `TargetPoses=${kPlace};${kPlace}`, '--set', `Duration=${kMoveSeconds}`]);
+
+test('moves together with an arm of metier: they begin and arrive as one', async () => {
+  await withBoth(async (both) => {
+    const { status, output, errors } = await moveBoth(both.url);
+    assert.strictEqual(status, 0, errors);
+    const results = JSON.parse(output);
+    assert.ok(results.Duration >= kMoveSeconds, output);
+    assert.ok(results.SkewAtStart < kLargestSkew && results.SkewAtEnd < kLargestSkew, output);
+  });
+});
+
+test('a Halt of the stream halts the arm of metier that moves with it', async () => {
+  await withBoth(async (both, ours) => {
+    const moving = moveBoth(both.url);
+    await awaitState(arm.url, 'PositionStreamSkill', 'Running');
+    await halt(arm.url);
+    const { status, errors } = await moving;
+    assert.notStrictEqual(status, 0);
+    assert.match(errors, /the position stream ended \(Halted\)/);
+    await awaitState(ours.url, 'JointPtpMoveSkill', 'Halted');
+  });
 });
 
 for (const [lines, reason] of [

@@ -41,6 +41,7 @@ const text = (value) => ({ dataType: DataType.LocalizedText, value: { text: valu
  * @property {string|null} event the type of its events; null: none
  * @property {boolean} numbers whether its state has a number; its events have none in namespace 0
  * @property {boolean} ids whether states and transitions have NodeIds
+ * @property {number} [namespace] of the methods' BrowseNames; default: 0
  */
 class ForeignProgram {
   /** @param {Shape} shape */
@@ -61,7 +62,7 @@ class ForeignProgram {
     this.last = this.addStateVariable('LastTransition', 'FiniteTransitionVariableType');
     for (const method of shape.methods) {
       namespace
-        .addMethod(this.object, { browseName: coerceQualifiedName(`0:${method}`), inputArguments: [] })
+        .addMethod(this.object, { browseName: coerceQualifiedName(`${shape.namespace ?? 0}:${method}`), inputArguments: [] })
         .bindMethod((_inputs, _context, done) => done(null, { statusCode: this.call(method) }));
     }
     this.duration = this.addField('ParameterSet', 'Duration', DataType.Double, 0.05);
@@ -180,6 +181,10 @@ const kShapes = [
   { name: 'PlainEvents', methods: kMethods, event: 'TransitionEventType', numbers: false, ids: true },
   { name: 'WithoutEvents', methods: kMethods, event: null, numbers: true, ids: true },
   { name: 'NamesOnly', methods: kMethods, event: 'TransitionEventType', numbers: false, ids: false },
+  {
+    name: 'OwnMethods', methods: kMethods, event: 'TransitionEventType', numbers: false, ids: true,
+    namespace: 1,
+  },
   { name: 'StartAndHalt', methods: ['Start', 'Halt'], event: 'TransitionEventType', numbers: false, ids: true },
   { name: 'StartOnly', methods: ['Start'], event: null, numbers: false, ids: true },
 ];

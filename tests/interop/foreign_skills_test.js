@@ -12,7 +12,8 @@ const { runMetier, startMetier, startProcess, startServer } = require('./metier_
 const kProgram = path.join(__dirname, 'foreign_skills.js');
 const kLostConnection = 3;
 const kSkills = [
-  'Whole', 'WithoutNumbers', 'PlainEvents', 'WithoutEvents', 'NamesOnly', 'StartAndHalt', 'StartOnly',
+  'Whole', 'WithoutNumbers', 'PlainEvents', 'WithoutEvents', 'NamesOnly', 'OwnMethods',
+  'StartAndHalt', 'StartOnly',
 ];
 
 let server;
@@ -65,6 +66,41 @@ for (const skill of ['Whole', 'WithoutEvents', 'NamesOnly']) {
     }
   });
 }
+
+test('run records what the server does not: parameters, Suspend, result, refusal and Halt', async () => {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'foreign_run_'));
+  try {
+    const records = path.join(folder, 'records.db');
+    const recorded = (...more) => run('Whole', '--records', records, ...more);
+    const going = recorded('--set', 'Duration=3');
+    await awaitState(server.url, 'Whole', 'Running');
+    const refused = await recorded('--set', 'Duration=0');
+    assert.notStrictEqual(refused.status, 0);
+    assert.strictEqual((await runMetier(['suspend', server.url, 'Whole'])).status, 0);
+    await awaitState(server.url, 'Whole', 'Suspended');
+    assert.strictEqual((await runMetier(['resume', server.url, 'Whole'])).status, 0);
+    assert.strictEqual((await going).status, 0);
+    const late = await recorded('--set', 'Duration=30', '--timeout', '0.5');
+    assert.notStrictEqual(late.status, 0);
+    assert.strictEqual((await runMetier(['reset', server.url, 'Whole'])).status, 0);
+
+    const { output } = await runMetier(['history', '--records', records, '--json']);
+    const rows = output.trim().split('\n').map((line) => JSON.parse(line));
+    assert.deepStrictEqual(rows.map(({ state, reason }) => [state, reason]),
+      [['Halted', 'ByClient'], ['Halted', 'Error'], ['Ready', 'Finished']]);
+    assert.match(rows[1].reason_text, /the start was refused/);
+    assert.strictEqual(rows[2].server_name, server.url);
+    assert.strictEqual(rows[2].parameters.Duration, 3);
+    assert.ok(rows[2].result.Count > 0);
+    const shown = await runMetier(['history', 'show', '1', '--records', records, '--json']);
+    const { transitions } = JSON.parse(shown.output);
+    assert.deepStrictEqual(transitions.map(({ from, to }) => `${from} to ${to}`),
+      ['Ready to Running', 'Running to Suspended', 'Suspended to Running']);
+    assert.match(transitions[0].reason_text, /no atomic start, no dead-man/);
+  } finally {
+    fs.rmSync(folder, { recursive: true });
+  }
+});
 
 test('what is not there to suspend or reset is named', async () => {
   for (const [command, method] of [['suspend', 'Suspend'], ['reset', 'Reset']]) {

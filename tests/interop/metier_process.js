@@ -11,6 +11,11 @@ const kReadyTimeoutMs = 60000;
 const kRunTimeoutMs = 60000;
 const kLab = ['--insecure-lab'];
 
+// Records and other state of the programs that a test starts.
+const stateFolder = fs.mkdtempSync(path.join(os.tmpdir(), 'metier_state_'));
+process.env.XDG_STATE_HOME = stateFolder;
+process.on('exit', () => fs.rmSync(stateFolder, { recursive: true, force: true }));
+
 function metierProgram() {
   const program = process.env.METIER;
   if (!program) {

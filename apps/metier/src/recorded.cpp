@@ -25,12 +25,11 @@ CLI::Validator withoutPassword() {
             ""};
 }
 
-void addRecords(CLI::App& command, std::string& url) {
+void addRecords(CLI::App& command, std::string& url, const std::string& help) {
     url = defaultRecords();
     command
         .add_option("--records", url,
-                    "Where the records are: a file, sqlite:FILE or "
-                    "postgresql://USER@HOST/DATABASE")
+                    help + ": a file, sqlite:FILE or postgresql://USER@HOST/DATABASE")
         ->check(withoutPassword())
         ->capture_default_str();
 }

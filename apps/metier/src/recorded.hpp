@@ -15,7 +15,9 @@ std::string defaultRecords();
 /// Refuses where records are with a password in it: everybody sees the command lines of a machine.
 CLI::Validator withoutPassword();
 /// Adds --records to a command.
-void addRecords(CLI::App& command, std::string& url);
+/// \param help without the forms that it takes
+void addRecords(CLI::App& command, std::string& url,
+                const std::string& help = "Where the records are");
 
 /// The model of the robot that an execution moved: the product that its device is, or the model
 /// with the longest name that is in those of its device and server.

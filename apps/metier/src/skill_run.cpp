@@ -3,20 +3,25 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 #include <utility>
 
+#include "metier/base/random.hpp"
 #include "metier/client/control_handle.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "metier/skill/json.hpp"
 #include "printable.hpp"
+#include "run_record.hpp"
 
 namespace metier::app {
 namespace {
 
 using client::SkillHandle;
+
+constexpr std::size_t kIdDigits = 32;
 
 void printResult(const skill::ValueMap& result, bool as_json) {
     if (as_json) {
@@ -47,7 +52,7 @@ private:
     static constexpr std::chrono::milliseconds kLook{100};
 
     static void halt(opcua::Client& client, const client::SkillAddress& skill) {
-        const auto method = client.translate(skill.node, {{0, "Halt"}});
+        const auto method = client::findMethod(client, skill, skill::Method::halt);
         if (!method && method.error().status == opcua::status::kBadNoMatch) {
             fmt::print(stderr, "metier: {} has no Halt: it goes on\n", printable(skill.name));
             client.close();
@@ -68,14 +73,19 @@ private:
     std::jthread thread_;
 };
 
-void showTransitions(SkillHandle& skill) {
-    skill.onTransition([](const skill::TransitionEvent& event) {
+/// Prints the transitions of a skill, and adds them to the record, if there is one.
+void showTransitions(SkillHandle& skill, const std::shared_ptr<RunRecord>& record) {
+    skill.onTransition([record](const skill::TransitionEvent& event) {
         fmt::print(stderr, "{} to {}{}{}\n", toString(event.from), toString(event.to),
                    event.reason_text.empty() ? "" : ": ", event.reason_text);
+        if (record != nullptr) {
+            record->add(event);
+        }
     });
 }
 
 struct OwnedRun {
+    const std::string& id;
     const skill::ValueMap& values;
     SteadyTime deadline;
     const OwnerOptions& owner;
@@ -93,7 +103,8 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
                           client, controller == nullptr ? opcua::NodeId() : controller->node,
                           {.lease = run.owner.lease(), .on_loss = run.owner.action()}));
     }
-    return skill.runWith({.parameters = run.values,
+    return skill.runWith({.execution_id = run.id,
+                          .parameters = run.values,
                           .on_owner_loss = run.owner.action(),
                           .epoch = control ? control->epoch() : 0},
                          run.deadline);
@@ -104,14 +115,27 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
 Exit runSkill(const link::StopSignal& signal, OpenSkill& open, const skill::ValueMap& values,
               const SkillRun& run) {
     auto& skill = open.skill;
-    showTransitions(skill);
-    const HaltOnSignal halt_on_signal(signal, *open.client, skill.address());
-    const auto result = runOwned(skill, *open.client, {values, deadlineIn(run.timeout), run.owner});
-    if (!result) {
-        return reportOutcome(result.error());
+    // Only who records a run gives it a name: runWith() asks what became of a name that is given.
+    auto id = skill.knowsExecutions() ? std::string() : randomHex(kIdDigits);
+    auto record = RunRecord::begin(run.records, open, {.execution_id = id, .parameters = values});
+    if (!record) {
+        fmt::print(stderr, "metier: {}\n", printable(record.error().message));
+        return Exit::usage;
     }
-    printResult(*result, run.json);
-    return Exit::success;
+    showTransitions(skill, *record);
+    const HaltOnSignal halt_on_signal(signal, *open.client, skill.address());
+    const auto result =
+        runOwned(skill, *open.client, {id, values, deadlineIn(run.timeout), run.owner});
+    const auto exit = result ? Exit::success : reportOutcome(result.error());
+    if (result) {
+        printResult(*result, run.json);
+        std::fflush(stdout);
+    }
+    if (*record != nullptr) {
+        skill.onTransition({});
+        (*record)->end(result, {skill.state().value_or(skill::State::running), signal.came()});
+    }
+    return exit;
 }
 
 }  // namespace metier::app

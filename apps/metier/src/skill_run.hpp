@@ -12,7 +12,8 @@ namespace metier::app {
 struct SkillRun {
     double timeout = 60.0;  ///< halted after that [s]
     OwnerOptions owner{};
-    bool json = false;  ///< prints the result as JSON
+    bool json = false;    ///< prints the result as JSON
+    std::string records;  ///< where runs at servers of other makers are recorded; empty: nowhere
 };
 
 /// Starts the skill, shows its transitions on standard error, waits for its end and prints its

@@ -11,6 +11,7 @@
 
 #include "metier/opcua/text.hpp"
 #include "questions.hpp"
+#include "skill_nodes.hpp"
 
 namespace metier::client {
 namespace {
@@ -155,6 +156,18 @@ Answer<std::vector<SkillType>> typeChain(Client& client, const SkillAddress& ski
         types.push_back({sanitise(parents.front().browse_name.name), parents.front().target});
     }
     return types;
+}
+
+Answer<NodeId> findMethod(Client& client, const SkillAddress& skill, skill::Method method) {
+    METIER_ASSIGN(const auto methods,
+                  client.browse({.node = skill.node, .node_classes = {NodeClass::method}}));
+    const auto* found = methodAmong(methods, method);
+    if (found == nullptr) {
+        return tl::unexpected(failureOf(Errc::not_found,
+                                        fmt::format("{} has no {}", skill.name, toString(method)),
+                                        opcua::status::kBadNoMatch));
+    }
+    return found->target;
 }
 
 Answer<SkillAddress> findSkill(Client& client, std::string_view name) {

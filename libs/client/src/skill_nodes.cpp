@@ -30,6 +30,24 @@ const Reference* findNamed(const std::vector<Reference>& references, std::string
     return found == references.end() ? nullptr : &*found;
 }
 
+}  // namespace
+
+const Reference* methodAmong(const std::vector<Reference>& children, skill::Method method) {
+    const auto name = toString(method);
+    const Reference* found = nullptr;
+    for (const auto& child : children) {
+        const bool fits =
+            child.node_class == opcua::NodeClass::method && child.browse_name.name == name;
+        if (fits && (found == nullptr ||
+                     child.browse_name.namespace_index < found->browse_name.namespace_index)) {
+            found = &child;
+        }
+    }
+    return found;
+}
+
+namespace {
+
 Answer<std::vector<Reference>> childrenOf(Questions& questions, const NodeId& node) {
     return questions.browse({.node = node, .node_classes = {}});
 }
@@ -129,7 +147,7 @@ tl::unexpected<opcua::Failure> lacks(const SkillAddress& address, std::string_vi
 Answer<> findNodes(Client& client, const SkillAddress& address,
                    const std::vector<Reference>& children, SkillNodes& nodes) {
     for (const auto method : kMethods) {
-        if (const auto* found = findNamed(children, toString(method))) {
+        if (const auto* found = methodAmong(children, method)) {
             nodes.methods.at(static_cast<std::size_t>(method)) = found->target;
         }
     }

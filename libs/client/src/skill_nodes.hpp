@@ -50,6 +50,11 @@ struct SkillNodes {
 
 std::vector<skill::Field> fieldsOf(const std::vector<FieldNode>& nodes);
 
+/// The method of that name among the references from a skill, in the lowest namespace that has one;
+/// null: none.
+const opcua::Reference* methodAmong(const std::vector<opcua::Reference>& children,
+                                    skill::Method method);
+
 /// Finds them. Errors: not_found if the object lacks what every Program has.
 opcua::Answer<SkillNodes> readSkillNodes(opcua::Client& client, const SkillAddress& address);
 

@@ -111,6 +111,25 @@ TEST_F(FoundSkills, HaveATypeThatEndsAtThatOfPrograms) {
     EXPECT_EQ(types->back().node, opcua::ids::kBaseObjectType);
 }
 
+TEST_F(FoundSkills, HaveTheirMethodsInAnyNamespace) {
+    const auto skill = served_.program(kTop, "Skill");
+    const auto start = served_.method(skill, "Start");
+    served_.method(skill, "Suspend");
+    const auto suspend =
+        served_.nodes()
+            .addMethod({{{}, skill, opcua::ids::kHasComponent, {0, "Suspend"}}, {}, {}, {}})
+            .value();
+    served_.object(skill, "Halt");
+    const auto found = findSkill(served_.client(), "Skill").value();
+    EXPECT_EQ(findMethod(served_.client(), found, skill::Method::start).value(), start);
+    EXPECT_EQ(findMethod(served_.client(), found, skill::Method::suspend).value(), suspend)
+        << "that of OPC 10000-10 before one of the same name";
+    const auto missing = findMethod(served_.client(), found, skill::Method::halt);
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().status, opcua::status::kBadNoMatch);
+    EXPECT_EQ(missing.error().message, "Skill has no Halt");
+}
+
 TEST(SkillAddress, HasTheNearestControllerOfSeveral) {
     SkillAddress skill;
     EXPECT_EQ(skill.controller(), nullptr);

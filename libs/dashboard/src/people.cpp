@@ -40,7 +40,7 @@ opcua::Answer<opcua::NodeId> commandingMethod(opcua::Client& client, const Serve
     }
     const auto& controller = link.controllers().front();
     if (!controller.leases) {
-        return client.translate(link.skills().front().address.node, {{0, "Start"}});
+        return client::findMethod(client, link.skills().front().address, skill::Method::start);
     }
     METIER_ASSIGN(const auto metier, client.namespaceIndex(opcua_skill::kMetierUri));
     return client.translate(controller.node, {{metier, "AcquireControl"}});

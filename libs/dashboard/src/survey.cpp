@@ -86,7 +86,7 @@ std::string Survey::uniqueKey(const SkillAddress& address) const {
 
 Answer<> Survey::add(const SkillAddress& address) {
     METIER_ASSIGN(auto arm, armOf(address, noteUses(address)));
-    auto halt = link_.client().translate(address.node, {{0, "Halt"}});
+    auto halt = client::findMethod(link_.client(), address, skill::Method::halt);
     if (!halt && halt.error().status != opcua::status::kBadNoMatch) {
         return tl::unexpected(std::move(halt.error()));
     }

@@ -1,4 +1,4 @@
-#include "host/foreign_records.hpp"
+#include "host/recorded_used_skill.hpp"
 
 #include <gmock/gmock.h>
 
@@ -30,6 +30,10 @@ public:
 
 /// A skill of another maker that a component uses and records.
 class ForeignRecord : public ::testing::Test {
+public:
+    ForeignRecord(const ForeignRecord&) = delete;
+    ForeignRecord& operator=(const ForeignRecord&) = delete;
+
 protected:
     ForeignRecord() { weld_->lacks_text = "no atomic start, no dead-man"; }
     ~ForeignRecord() override {
@@ -37,8 +41,6 @@ protected:
         recorder_.reset();
         std::filesystem::remove_all(folder_);
     }
-    ForeignRecord(const ForeignRecord&) = delete;
-    ForeignRecord& operator=(const ForeignRecord&) = delete;
 
     void begin() {
         skill::StartRequest request{.execution_id = "cell.Weld/1/go/1",

@@ -24,7 +24,7 @@ void tell(const SkillAddress& skill, std::string_view what) {
 
 /// Calls Halt. \return whether it was called: a skill that is Halted already is as it should be
 Result<bool> callHalt(opcua::Client& client, const SkillAddress& skill) {
-    const auto method = client.translate(skill.node, {{0, "Halt"}});
+    const auto method = client::findMethod(client, skill, skill::Method::halt);
     if (!method && method.error().status == opcua::status::kBadNoMatch) {
         return fail(Errc::not_supported, skill.name + " has no Halt");
     }

@@ -6,6 +6,7 @@
 #include "metier/client/lack.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "printable.hpp"
+#include "recorded.hpp"
 #include "skill_run.hpp"
 #include "value_text.hpp"
 
@@ -126,6 +127,9 @@ void addRun(CLI::App& app, CommandContext& context) {
                     "Take control for the run; it is lost after so long without a heartbeat, such "
                     "as 300ms");
     command->add_flag("--json", options->run.json, "Print the result as JSON");
+    addRecords(*command, options->run.records,
+               "Where the run is recorded, if its server is of another maker and records nothing "
+               "(off: nowhere)");
     command->callback(
         [options, &context] { context.exit = exitOf(runRun(*options, context.identity)); });
 }

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "host/foreign_records.hpp"
 #include "host/server_alarm.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
@@ -15,6 +14,7 @@
 #include "metier/records/path_sampler.hpp"
 #include "metier/records/program_recorder.hpp"
 #include "metier/records/recorder.hpp"
+#include "metier/server/foreign_records.hpp"
 
 namespace metier::server {
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "host/port_lock.hpp"
+#include "host/recorded_used_skill.hpp"
 #include "host/server_limits.hpp"
 #include "metier/composition/skill_type_file.hpp"
 #include "metier/opcua_skill/base_placement.hpp"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "host/announcement.hpp"
-#include "host/foreign_records.hpp"
 #include "host/server_access.hpp"
 #include "host/server_audit.hpp"
 #include "host/server_records.hpp"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "metier/opcua/client.hpp"
+#include "metier/skill/state.hpp"
 
 namespace metier::client {
 
@@ -43,6 +44,12 @@ struct SkillAddress {
 /// Uses nothing but the address space; knows no robot and no maker.
 /// Errors: those of the server, connection_lost, timeout. Threads: any but the client's own; waits.
 opcua::Answer<std::vector<SkillAddress>> findSkills(opcua::Client& client);
+
+/// Finds a Method of a skill by its BrowseName; in namespace 0, or else in any other: servers of
+/// other makers may have it there.
+/// Errors: not_found (BadNoMatch); those of the server. Threads: as findSkills().
+opcua::Answer<opcua::NodeId> findMethod(opcua::Client& client, const SkillAddress& skill,
+                                        skill::Method method);
 
 /// A type in the chain of a skill's types.
 struct SkillType {

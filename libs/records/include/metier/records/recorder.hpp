@@ -76,7 +76,8 @@ public:
     struct Options {
         /// Store, as Store::open() takes it.
         std::string url{};
-        /// ApplicationUri of the server; no other recorder uses it.
+        /// ApplicationUri of the server. Recorders of several processes may share it: what one of
+        /// them left under way when it died is closed once none of them is there.
         std::string server{};
         /// Age and size up to which records are kept.
         Retention keep{};
