@@ -68,8 +68,9 @@ public:
             orThrow(composition::parseDefinition(text, name_)), {{"inner", child->description()}}));
         std::map<std::string, std::unique_ptr<composition::UsedSkill>> children;
         children.emplace("inner", std::move(child));
-        serve(std::make_unique<composition::SequenceSkill>(std::move(composed), std::move(children),
-                                                           skills_->executor(), clock_, name_));
+        serve(std::make_unique<composition::SequenceSkill>(
+            std::move(composed), std::move(children),
+            composition::SequenceSkill::Host{skills_->executor(), clock_, name_}));
     }
     std::string url() const { return server_->endpointUrl(); }
 

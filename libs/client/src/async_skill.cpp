@@ -32,16 +32,20 @@ struct AsyncSkill::Impl {
     Answer<> startByWrites(const skill::StartRequest& request, Done<std::string> done) const;
     Answer<> look(const std::string& id, Done<skill::ExecutionRecord> done) const;
 
+    struct Method {
+        const opcua::NodeId& node;
+        std::string_view name;
+    };
     /// Calls a method and passes the result of `read` for its outputs to `done`.
     template <typename T, typename Read>
-    Answer<> send(const opcua::NodeId& method, std::string_view name,
-                  std::vector<opcua::Value> inputs, Done<T> done, Read read) const {
-        if (method == opcua::NodeId{}) {
+    Answer<> send(const Method& method, std::vector<opcua::Value> inputs, Done<T> done,
+                  Read read) const {
+        if (method.node == opcua::NodeId{}) {
             return opcua::failed(opcua::status::kBadMethodInvalid,
-                                 fmt::format("{} has no {}", address.name, name));
+                                 fmt::format("{} has no {}", address.name, method.name));
         }
         return client.callAsync(
-            {address.node, method, std::move(inputs)},
+            {address.node, method.node, std::move(inputs)},
             [done = std::move(done), read = std::move(read)](Answer<CallResult> result) {
                 if (result) {
                     done(read(result->outputs));
@@ -66,6 +70,9 @@ struct NamelessStart {
     std::string id;
     opcua::MethodCall start;
     std::vector<std::string> names;  // of the parameters, in the order of the writes
+    // Has a doubt once Start is answered: what it begins may be over before a subscription shows
+    // it.
+    std::shared_ptr<TransitionLog> log;
 };
 
 Answer<> written(const std::vector<opcua::StatusCode>& statuses, const NamelessStart& start) {
@@ -77,31 +84,28 @@ Answer<> written(const std::vector<opcua::StatusCode>& statuses, const NamelessS
     return {};
 }
 
-/// Calls Start. What it begins may be over before any subscription could show it: `log` has a doubt
-/// once it is answered.
 Answer<> callStart(opcua::Client& client, const NamelessStart& start,
-                   const std::shared_ptr<TransitionLog>& log, AsyncSkill::Done<std::string> done) {
-    return client.callAsync(start.start,
-                            [id = start.id, log, done = std::move(done)](const auto& answer) {
-                                done(answer.map([&](const CallResult& /*none*/) { return id; }));
-                                log->doubt();
-                            });
+                   AsyncSkill::Done<std::string> done) {
+    return client.callAsync(
+        start.start, [id = start.id, log = start.log, done = std::move(done)](const auto& answer) {
+            done(answer.map([&](const CallResult& /*none*/) { return id; }));
+            log->doubt();
+        });
 }
 
 /// Writes the parameters, then calls Start.
 Answer<> writeAndStart(opcua::Client& client, std::vector<opcua::WriteItem> writes,
-                       NamelessStart start, const std::shared_ptr<TransitionLog>& log,
-                       AsyncSkill::Done<std::string> done) {
+                       NamelessStart start, AsyncSkill::Done<std::string> done) {
     if (writes.empty()) {
-        return callStart(client, start, log, std::move(done));
+        return callStart(client, start, std::move(done));
     }
     return client.writeManyAsync(
-        std::move(writes), [&client, start = std::move(start), log, done = std::move(done)](
+        std::move(writes), [&client, start = std::move(start), done = std::move(done)](
                                const Answer<std::vector<opcua::StatusCode>>& statuses) {
             auto begun =
                 statuses ? written(*statuses, start) : Answer<>(tl::unexpected(statuses.error()));
             if (begun) {
-                begun = callStart(client, start, log, done);
+                begun = callStart(client, start, done);
             }
             if (!begun) {
                 done(tl::unexpected(begun.error()));
@@ -219,7 +223,7 @@ Answer<> AsyncSkill::startWith(const skill::StartRequest& request, Done<std::str
         return impl_->startByWrites(request, std::move(done));
     }
     return impl_->send<std::string>(
-        impl_->nodes.start_with, "StartWith", startWithInputs(request, impl_->nodes),
+        {impl_->nodes.start_with, "StartWith"}, startWithInputs(request, impl_->nodes),
         std::move(done), [](const std::vector<opcua::Value>& outputs) -> Answer<std::string> {
             return outputs.empty() ? std::string() : outputs.front().as<std::string>().value_or("");
         });
@@ -234,7 +238,8 @@ Answer<> AsyncSkill::Impl::startByWrites(const skill::StartRequest& request,
     NamelessStart start{
         request.execution_id,
         {address.node, nodes.methods.at(static_cast<std::size_t>(skill::Method::start))},
-        {}};
+        {},
+        log};
     std::vector<opcua::WriteItem> writes;
     for (const auto& [name, value] : request.parameters) {
         const auto found =
@@ -248,7 +253,7 @@ Answer<> AsyncSkill::Impl::startByWrites(const skill::StartRequest& request,
         start.names.push_back(name);
     }
     if (!nodes.lock.isThere()) {
-        return writeAndStart(client, std::move(writes), std::move(start), log, std::move(done));
+        return writeAndStart(client, std::move(writes), std::move(start), std::move(done));
     }
     // An execution that did not begin needs no lock.
     auto begun = [lock = lock_use, done = std::move(done)](const Answer<std::string>& id) {
@@ -258,9 +263,8 @@ Answer<> AsyncSkill::Impl::startByWrites(const skill::StartRequest& request,
         done(id);
     };
     lock_use->take([&client = client, writes = std::move(writes), start = std::move(start),
-                    log = log, begun = std::move(begun)](const Answer<>& locked) {
-        const auto sent =
-            locked ? writeAndStart(client, writes, start, log, begun) : Answer<>(locked);
+                    begun = std::move(begun)](const Answer<>& locked) {
+        const auto sent = locked ? writeAndStart(client, writes, start, begun) : Answer<>(locked);
         if (!sent) {
             begun(tl::unexpected(sent.error()));
         }
@@ -269,9 +273,9 @@ Answer<> AsyncSkill::Impl::startByWrites(const skill::StartRequest& request,
 }
 
 Answer<> AsyncSkill::call(skill::Method method, Done<> done) const {
-    return impl_->send<void>(impl_->nodes.methods.at(static_cast<std::size_t>(method)),
-                             toString(method), {}, std::move(done),
-                             [](const std::vector<opcua::Value>& /*none*/) { return Answer<>(); });
+    return impl_->send<void>(
+        {impl_->nodes.methods.at(static_cast<std::size_t>(method)), toString(method)}, {},
+        std::move(done), [](const std::vector<opcua::Value>& /*none*/) { return Answer<>(); });
 }
 
 bool AsyncSkill::runsOthers() const noexcept {
@@ -281,7 +285,7 @@ bool AsyncSkill::runsOthers() const noexcept {
 Answer<> AsyncSkill::check(const skill::CheckRequest& request,
                            Done<skill::CheckReport> done) const {
     return impl_->send<skill::CheckReport>(
-        impl_->nodes.check, "Check", checkInputs(request), std::move(done),
+        {impl_->nodes.check, "Check"}, checkInputs(request), std::move(done),
         [name = impl_->address.name](const std::vector<opcua::Value>& outputs) {
             return checkReportFrom(outputs, name);
         });
@@ -292,7 +296,7 @@ Answer<> AsyncSkill::execution(const std::string& id, Done<skill::ExecutionRecor
         return impl_->look(id, std::move(done));
     }
     return impl_->send<skill::ExecutionRecord>(
-        impl_->nodes.get_execution, "GetExecution", {opcua::Value::of(id)}, std::move(done),
+        {impl_->nodes.get_execution, "GetExecution"}, {opcua::Value::of(id)}, std::move(done),
         [id, results = impl_->description.results,
          name = impl_->address.name](const std::vector<opcua::Value>& outputs) {
             return executionFrom(outputs, id, results, name);

@@ -307,29 +307,33 @@ void DeviceLocks::learnTime(const LockNodes& nodes) {
     static_cast<void>(sent);  // then it is renewed each kRenewal
 }
 
+/// Locks to renew now. If there are none, it first waits until one is due, or the times change, or
+/// `stop`, and the answer is empty.
+std::vector<LockNodes> DeviceLocks::dueRenewals(const std::stop_token& stop) {
+    std::vector<LockNodes> due;
+    std::unique_lock guard(mutex_);
+    const auto now = std::chrono::steady_clock::now();
+    auto next = now + kLongestRenewal;
+    for (auto& [id, lock] : locks_) {
+        if (lock.stage != Stage::held || lock.nodes.renew.isNull()) {
+            continue;
+        }
+        if (lock.next_renewal <= now) {
+            due.push_back(lock.nodes);
+            lock.next_renewal = now + lock.renewal;
+        }
+        next = std::min(next, lock.next_renewal);
+    }
+    if (due.empty()) {
+        changed_.wait_until(guard, stop, next,
+                            [this, before = changes_] { return changes_ != before; });
+    }
+    return due;
+}
+
 void DeviceLocks::renewAll(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-        std::vector<LockNodes> due;
-        {
-            std::unique_lock guard(mutex_);
-            const auto now = std::chrono::steady_clock::now();
-            auto next = now + kLongestRenewal;
-            for (auto& [id, lock] : locks_) {
-                if (lock.stage != Stage::held || lock.nodes.renew.isNull()) {
-                    continue;
-                }
-                if (lock.next_renewal <= now) {
-                    due.push_back(lock.nodes);
-                    lock.next_renewal = now + lock.renewal;
-                }
-                next = std::min(next, lock.next_renewal);
-            }
-            if (due.empty()) {
-                changed_.wait_until(guard, stop, next,
-                                    [this, before = changes_] { return changes_ != before; });
-            }
-        }
-        for (const auto& nodes : due) {
+        for (const auto& nodes : dueRenewals(stop)) {
             renew(nodes);
         }
     }

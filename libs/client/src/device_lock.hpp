@@ -79,6 +79,7 @@ private:
     void settle(const LockNodes& nodes, Stage stage, const opcua::Answer<>& outcome);
     void left(const LockNodes& nodes, const opcua::Answer<>& outcome);
     void learnTime(const LockNodes& nodes);
+    std::vector<LockNodes> dueRenewals(const std::stop_token& stop);
     void renewAll(const std::stop_token& stop);
     void renew(const LockNodes& nodes);
     void renewed(const opcua::NodeId& id, const opcua::Answer<opcua::CallResult>& answer);

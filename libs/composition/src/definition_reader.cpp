@@ -32,10 +32,15 @@ constexpr std::array kTypes{ValueType::boolean, ValueType::int32,   ValueType::u
                             ValueType::frame,   ValueType::vector3, ValueType::numbers,
                             ValueType::texts,   ValueType::ranges,  ValueType::frames};
 
-/// The element of `known` that is called `name`; notes it if there is none.
+/// A key of a table.
+struct KeyOf {
+    const TomlTable& table;
+    std::string_view key;
+};
+
+/// The element of `known` that is called `name`; notes it at the key if there is none.
 template <typename List, typename NameOf>
-auto choose(const TomlTable& table, std::string_view key, const std::string& name,
-            const List& known, NameOf name_of) {
+auto choose(const KeyOf& at, const std::string& name, const List& known, NameOf name_of) {
     const auto found = std::find_if(known.begin(), known.end(),
                                     [&](const auto& one) { return name_of(one) == name; });
     if (found != known.end()) {
@@ -45,7 +50,8 @@ auto choose(const TomlTable& table, std::string_view key, const std::string& nam
     for (const auto& one : known) {
         names.push_back(name_of(one));
     }
-    table.reject(key, fmt::format("\"{}\" is none of: \"{}\"", name, fmt::join(names, "\", \"")));
+    at.table.reject(at.key,
+                    fmt::format("\"{}\" is none of: \"{}\"", name, fmt::join(names, "\", \"")));
     return known.front();
 }
 
@@ -150,7 +156,7 @@ skill::OwnerLossAction readOwnerLoss(const TomlTable& root) {
     constexpr std::array kChoices{Choice{"halt", skill::OwnerLossAction::halt},
                                   Choice{"suspend", skill::OwnerLossAction::suspend},
                                   Choice{"continue", skill::OwnerLossAction::keep_going}};
-    return choose(root, "on_owner_loss", root.textOr("on_owner_loss", "halt"), kChoices,
+    return choose({root, "on_owner_loss"}, root.textOr("on_owner_loss", "halt"), kChoices,
                   [](const Choice& choice) { return choice.name; })
         .action;
 }
@@ -182,9 +188,9 @@ Result<Definition> checkedDefinition(Result<TomlFile> file, std::string name) {
 
 Field readField(const TomlTable& table, const std::string& name) {
     Field field{.name = name, .description = table.textOr("description", "")};
-    field.type = choose(table, "type", table.text("type"), kTypes,
+    field.type = choose({table, "type"}, table.text("type"), kTypes,
                         [](ValueType type) { return skill::toString(type); });
-    field.unit = choose(table, "unit", table.textOr("unit", ""), skill::kUnits,
+    field.unit = choose({table, "unit"}, table.textOr("unit", ""), skill::kUnits,
                         [](const Unit& unit) { return unit.symbol; });
     readRange(table, field);
     readLength(table, field);
@@ -258,8 +264,8 @@ Result<Definition> parseDefinition(std::string_view text, std::string name) {
     return checkedDefinition(TomlFile::parse(text, name), name);
 }
 
-Result<Definition> loadDefinition(const std::filesystem::path& path) {
-    return checkedDefinition(TomlFile::load(path), path.string());
+Result<Definition> loadDefinition(const std::filesystem::path& file) {
+    return checkedDefinition(TomlFile::load(file), file.string());
 }
 
 }  // namespace metier::composition

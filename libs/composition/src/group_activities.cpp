@@ -155,13 +155,13 @@ Result<bool> LoopActivity::goesOn() const {
         return false;
     }
     if (step_.condition) {
-        const auto held = run_.scope().holds(*step_.condition);
+        auto held = run_.scope().holds(*step_.condition);
         if (!held || !*held) {
             return held;
         }
     }
     if (step_.until && round_ > 0) {
-        const auto done = run_.scope().holds(*step_.until);
+        auto done = run_.scope().holds(*step_.until);
         if (!done || *done) {
             return done ? Result<bool>(false) : done;
         }

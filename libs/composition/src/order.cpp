@@ -48,15 +48,21 @@ private:
                                     fmt::join(joint_path_, " uses ")));
         }
         for (const auto& use : definition.uses) {
-            for (std::size_t other = 0; other < given_.size(); ++other) {
-                if (given_[other].type == use.type) {
-                    METIER_TRY(take(other));
-                }
-            }
+            METIER_TRY(takeType(use.type));
         }
         joint_path_.pop_back();
         taken_[index] = true;
         sorted_.push_back(given_[index]);
+        return {};
+    }
+
+    /// Takes the definitions of a type.
+    Result<void> takeType(const std::string& type) {
+        for (std::size_t index = 0; index < given_.size(); ++index) {
+            if (given_[index].type == type) {
+                METIER_TRY(take(index));
+            }
+        }
         return {};
     }
 

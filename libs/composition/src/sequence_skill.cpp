@@ -39,6 +39,20 @@ private:
     std::shared_ptr<const char> counted_;
 };
 
+/// Whether an execution that comes by a step comes by all steps in it.
+bool runsAllSteps(const Step& step) {
+    switch (step.kind) {
+        case StepKind::sequence:
+            return true;
+        case StepKind::parallel:
+            return step.wait_for == WaitFor::all;
+        case StepKind::loop:
+            return !step.condition;
+        default:
+            return false;
+    }
+}
+
 /// The aliases of the calls that every execution comes by.
 void collectNeeded(const std::vector<Step>& steps, std::vector<std::string>& aliases) {
     for (const auto& step : steps) {
@@ -46,10 +60,7 @@ void collectNeeded(const std::vector<Step>& steps, std::vector<std::string>& ali
             if (std::find(aliases.begin(), aliases.end(), step.use) == aliases.end()) {
                 aliases.push_back(step.use);
             }
-        } else if (step.kind == StepKind::sequence ||
-                   (step.kind == StepKind::parallel && step.wait_for == WaitFor::all)) {
-            collectNeeded(step.steps, aliases);
-        } else if (step.kind == StepKind::loop && !step.condition) {
+        } else if (runsAllSteps(step)) {
             collectNeeded(step.steps, aliases);
         }
     }
@@ -59,12 +70,11 @@ void collectNeeded(const std::vector<Step>& steps, std::vector<std::string>& ali
 
 SequenceSkill::SequenceSkill(Composition composition,
                              std::map<std::string, std::unique_ptr<UsedSkill>> used_skills,
-                             std::shared_ptr<skill::Executor> executor, const Clock& clock,
-                             std::string origin)
+                             Host host)
     : composition_(std::move(composition)),
-      executor_(std::move(executor)),
-      clock_(clock),
-      origin_(std::move(origin)) {
+      executor_(std::move(host.executor)),
+      clock_(host.clock),
+      origin_(std::move(host.origin)) {
     for (const auto& use : composition_.definition.uses) {
         auto& bound = used_[use.alias];
         bound.skill = std::move(used_skills.at(use.alias));

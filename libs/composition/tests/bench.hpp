@@ -121,9 +121,9 @@ public:
         if (!composition) {
             throw std::invalid_argument(composition.error().message);
         }
-        auto sequence =
-            std::make_unique<SequenceSkill>(std::move(*composition), std::move(used_skills),
-                                            executor, executor->clock(), "here.TestSkill");
+        auto sequence = std::make_unique<SequenceSkill>(
+            std::move(*composition), std::move(used_skills),
+            SequenceSkill::Host{executor, executor->clock(), "here.TestSkill"});
         skill = sequence.get();
         program =
             std::make_unique<skill::Program>(skill::ProgramOptions{.rest_deadline = deadline},

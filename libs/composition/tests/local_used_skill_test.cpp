@@ -50,8 +50,9 @@ protected:
         std::map<std::string, std::unique_ptr<UsedSkill>> used_skills;
         used_skills.emplace("inner", std::make_unique<LocalUsedSkill>(
                                          inner, executor_, skill::Caller{name, name, ""}));
-        return add(std::make_unique<SequenceSkill>(std::move(composition), std::move(used_skills),
-                                                   executor_, executor_->clock(), "here." + name));
+        return add(std::make_unique<SequenceSkill>(
+            std::move(composition), std::move(used_skills),
+            SequenceSkill::Host{executor_, executor_->clock(), "here." + name}));
     }
 
     Program& add(std::unique_ptr<skill::Skill> skill) {

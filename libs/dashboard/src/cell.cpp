@@ -55,9 +55,9 @@ void placeInWorld(const CellConfig& config, const ServerConfig& server, CellServ
 }
 
 std::string addressOf(const std::map<std::string, std::string>& given, const std::string& name,
-                      std::string configured) {
+                      const std::string& configured) {
     const auto found = given.find(name);
-    return found == given.end() ? std::move(configured) : found->second;
+    return found == given.end() ? configured : found->second;
 }
 
 /// Names of the servers of the cell whose skills those of `server` use.

@@ -20,7 +20,7 @@ using Message = std::shared_ptr<const std::string>;
 Message makeMessage(std::string_view event, const nlohmann::json& data);
 
 /// JSON as text, in one line, whatever text is in it.
-std::string dump(const nlohmann::json& json);
+std::string dump(const nlohmann::json& value);
 
 /// Queue of messages to one tab.
 ///

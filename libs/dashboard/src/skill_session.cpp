@@ -109,15 +109,19 @@ opcua::Answer<std::string> SkillSession::start(const LinkedSkill& linked,
 }
 
 std::vector<std::string> SkillSession::haltStarted() {
-    std::vector<std::future<std::string>> halted;
+    std::vector<std::shared_ptr<client::AsyncSkill>> running;
     {
         const std::lock_guard lock(mutex_);
         for (const auto& [key, used] : skills_) {
             if (!used.skill->knowsExecutions() && !used.run->isOver()) {
-                halted.push_back(std::async(
-                    std::launch::async, [skill = used.skill] { return haltUnlessOver(*skill); }));
+                running.push_back(used.skill);
             }
         }
+    }
+    std::vector<std::future<std::string>> halted;
+    for (const auto& skill : running) {
+        halted.push_back(
+            std::async(std::launch::async, [skill] { return haltUnlessOver(*skill); }));
     }
     std::vector<std::string> not_halted;
     for (auto& answer : halted) {

@@ -64,10 +64,16 @@ Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& skill, std::uint16_t 
                          .type = opcua::ids::kFolderType});
 }
 
-/// Adds the record of the execution that came `back` before the latest.
+/// The execution of a program that came `back` before the latest.
+struct PastExecution {
+    const skill::Program& program;
+    std::size_t back;
+};
+
+/// Adds its record to the folder.
 Result<void> addRecord(AddressSpace& nodes, const NodeId& folder, const NodeId& type,
-                       const skill::Program& program, std::size_t back) {
-    const auto name = back == 0 ? "Latest" : "Latest-" + std::to_string(back);
+                       const PastExecution& execution) {
+    const auto name = execution.back == 0 ? "Latest" : "Latest-" + std::to_string(execution.back);
     METIER_ASSIGN(
         const auto object,
         nodes.addObject({.node = {.parent = folder,
@@ -76,10 +82,10 @@ Result<void> addRecord(AddressSpace& nodes, const NodeId& folder, const NodeId& 
                          .type = type}));
     for (const auto& item : items()) {
         METIER_ASSIGN(const auto node, nodes.find(object, {type.namespaceIndex(), item.name}));
-        const auto read = [&program, back, &item](const opcua::Session& /*reader*/) {
-            const auto* record = program.recentExecution(back);
+        const auto read = [execution, &item](const opcua::Session& /*reader*/) {
+            const auto* record = execution.program.recentExecution(execution.back);
             return record == nullptr ? opcua::DataValue{{}, opcua::status::kBadNoData}
-                                     : opcua::DataValue{item.read(*record, program)};
+                                     : opcua::DataValue{item.read(*record, execution.program)};
         };
         METIER_TRY(nodes.setDataSource(node, {read}));
     }
@@ -95,7 +101,7 @@ Result<void> publishExecutionRecords(AddressSpace& nodes, const NodeId& skill,
                                                      {metier, "ExecutionRecordType"}));
     METIER_ASSIGN(const auto folder, folderOf(nodes, skill, metier));
     for (std::size_t back = 0; back < kBrowsableExecutions; ++back) {
-        METIER_TRY(addRecord(nodes, folder, type, program, back));
+        METIER_TRY(addRecord(nodes, folder, type, {program, back}));
     }
     return {};
 }

@@ -33,11 +33,15 @@ public:
         add(spec, &unit);
         return *this;
     }
-    /// \param unit nullptr: of no quantity
+    struct Figure {
+        const char* name;
+        const char* description;
+        const skill::Unit* unit;  ///< nullptr: of no quantity
+        skill::ValueType type;
+    };
     /// \param read an empty Value: nothing is known now
-    FigureMaker& live(const char* name, const char* description, const skill::Unit* unit,
-                      skill::ValueType type, std::function<Value()> read) {
-        const auto node = add(specOf(name, description, type), unit);
+    FigureMaker& live(const Figure& figure, std::function<Value()> read) {
+        const auto node = add(specOf(figure.name, figure.description, figure.type), figure.unit);
         if (outcome_) {
             outcome_ = nodes_.setDataSource(node, {sourceOf(std::move(read))});
         }
@@ -113,24 +117,29 @@ void publishStream(FigureMaker& maker, const std::function<StreamFigures()>& rea
     using skill::ValueType;
     const auto part = [&read](auto of) { return memberOf(read, of); };
     maker.live(
-        "StreamLag",
-        "How much longer than PlayOutDelay the newest set-point of the position stream waits "
-        "until the arm is sent it [s].",
-        &skill::kSecond, ValueType::number, part(&StreamFigures::lag));
-    maker.live("LargestStreamLag", "Largest StreamLag since the stream's start [s].",
-               &skill::kSecond, ValueType::number, part(&StreamFigures::largest_lag));
+        {"StreamLag",
+         "How much longer than PlayOutDelay the newest set-point of the position stream waits "
+         "until the arm is sent it [s].",
+         &skill::kSecond, ValueType::number},
+        part(&StreamFigures::lag));
+    maker.live({"LargestStreamLag", "Largest StreamLag since the stream's start [s].",
+                &skill::kSecond, ValueType::number},
+               part(&StreamFigures::largest_lag));
     maker.live(
-        "StreamClockStep",
-        "Largest step of the streaming client's clock since the stream's start; below 0: back "
-        "[s].",
-        &skill::kSecond, ValueType::number, part(&StreamFigures::clock_step));
-    maker.live("RefusedSetPoints",
-               "Set-points that were refused when they were written, since the stream's start.",
-               nullptr, ValueType::uint64, part(&StreamFigures::refused));
-    maker.live("DroppedSetPoints",
-               "Set-points whose time was not after that of the one before, since the stream's "
-               "start.",
-               nullptr, ValueType::uint64, part(&StreamFigures::dropped));
+        {"StreamClockStep",
+         "Largest step of the streaming client's clock since the stream's start; below 0: back "
+         "[s].",
+         &skill::kSecond, ValueType::number},
+        part(&StreamFigures::clock_step));
+    maker.live({"RefusedSetPoints",
+                "Set-points that were refused when they were written, since the stream's start.",
+                nullptr, ValueType::uint64},
+               part(&StreamFigures::refused));
+    maker.live({"DroppedSetPoints",
+                "Set-points whose time was not after that of the one before, since the stream's "
+                "start.",
+                nullptr, ValueType::uint64},
+               part(&StreamFigures::dropped));
 }
 
 }  // namespace
@@ -141,37 +150,38 @@ Result<void> publishArmFigures(opcua::AddressSpace& nodes, const NodeId& kinemat
     FigureMaker maker(nodes, kinematics);
     if (figures.commanded_joint_position) {
         maker.live(
-            "CommandedJointPosition",
-            "Joint positions that the controller was last told to go to, axis 1 first [rad].",
-            &skill::kRadian, ValueType::numbers,
+            {"CommandedJointPosition",
+             "Joint positions that the controller was last told to go to, axis 1 first [rad].",
+             &skill::kRadian, ValueType::numbers},
             [read = figures.commanded_joint_position] { return valueOf(read()); });
     }
     if (figures.standstill) {
-        maker.live("Standstill", "True while the measured arm does not move.", nullptr,
-                   ValueType::boolean, [read = figures.standstill] { return valueOf(read()); });
+        maker.live({"Standstill", "True while the measured arm does not move.", nullptr,
+                    ValueType::boolean},
+                   [read = figures.standstill] { return valueOf(read()); });
     }
     if (figures.stopping) {
-        maker.live("StoppingTime",
-                   "Time in which the set-points would stand if the arm were halted now [s].",
-                   &skill::kSecond, ValueType::number,
+        maker.live({"StoppingTime",
+                    "Time in which the set-points would stand if the arm were halted now [s].",
+                    &skill::kSecond, ValueType::number},
                    memberOf(figures.stopping, &StoppingFigures::time));
-        maker.live("StoppingDistance", "How far the tool frame would go meanwhile [m].",
-                   &skill::kMetre, ValueType::number,
+        maker.live({"StoppingDistance", "How far the tool frame would go meanwhile [m].",
+                    &skill::kMetre, ValueType::number},
                    memberOf(figures.stopping, &StoppingFigures::distance));
     }
     if (figures.cycle_jitter) {
-        maker.live("CycleJitter",
-                   "How far the time between two control cycles was off the period in the last "
-                   "100 ms, in the mean [s].",
-                   &skill::kSecond, ValueType::number,
+        maker.live({"CycleJitter",
+                    "How far the time between two control cycles was off the period in the last "
+                    "100 ms, in the mean [s].",
+                    &skill::kSecond, ValueType::number},
                    [read = figures.cycle_jitter] { return valueOf(read()); });
     }
     if (figures.flange_wrench) {
-        maker.live("FlangeForce", "Force on the flange along x, y, z of its sensor [N].",
-                   &skill::kNewton, ValueType::numbers,
+        maker.live({"FlangeForce", "Force on the flange along x, y, z of its sensor [N].",
+                    &skill::kNewton, ValueType::numbers},
                    memberOf(figures.flange_wrench, &FlangeWrench::force));
-        maker.live("FlangeTorque", "Torque on the flange about x, y, z of its sensor [N m].",
-                   &skill::kNewtonMetre, ValueType::numbers,
+        maker.live({"FlangeTorque", "Torque on the flange about x, y, z of its sensor [N m].",
+                    &skill::kNewtonMetre, ValueType::numbers},
                    memberOf(figures.flange_wrench, &FlangeWrench::torque));
     }
     if (figures.stream) {
@@ -188,13 +198,15 @@ Result<void> publishGripperFigures(opcua::AddressSpace& nodes, const NodeId& par
     FigureMaker maker(nodes, parent);
     maker.constant("GripperStroke", "Largest distance between the jaws [m].", skill::kMetre,
                    Value::of(kind.stroke));
-    maker.live("GripperWidth", "Distance between the jaws [m].", &skill::kMetre, ValueType::number,
-               part(&GripperFigures::width));
+    maker.live(
+        {"GripperWidth", "Distance between the jaws [m].", &skill::kMetre, ValueType::number},
+        part(&GripperFigures::width));
     if (kind.measures_force) {
-        maker.live("GripperForce", "Force on the part between the jaws [N].", &skill::kNewton,
-                   ValueType::number, part(&GripperFigures::force));
+        maker.live({"GripperForce", "Force on the part between the jaws [N].", &skill::kNewton,
+                    ValueType::number},
+                   part(&GripperFigures::force));
     }
-    maker.live("PartHeld", "True while the gripper holds a part.", nullptr, ValueType::boolean,
+    maker.live({"PartHeld", "True while the gripper holds a part.", nullptr, ValueType::boolean},
                part(&GripperFigures::part_held));
     return maker.outcome();
 }

@@ -174,7 +174,7 @@ private:
                                NodeId(index_.opc_robotics, kAxisType),
                                fmt::format("Axis {} of the arm, counted from the base.", axis + 1));
         spec.node.display_name = {"", spec_.axis_names[axis]};
-        const auto node = steps_.object(std::move(spec));
+        auto node = steps_.object(std::move(spec));
         steps_.write(steps_.find(node, {index_.opc_robotics, "MotionProfile"}), Value::of(kRotary));
         const auto parameters = steps_.find(node, {index_.di, "ParameterSet"});
         const auto position = steps_.find(parameters, {index_.opc_robotics, "ActualPosition"});

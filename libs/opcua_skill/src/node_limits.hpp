@@ -22,8 +22,8 @@ public:
 
 private:
     struct Limit {
-        std::uint16_t field;
-        Part part;
+        std::uint16_t field = 0;
+        Part part{};
         Range range;
     };
     std::vector<Limit> limits_;

@@ -73,15 +73,21 @@ Result<void> serveSafetyStates(AddressSpace& nodes, const Names& names, const No
     return {};
 }
 
+/// The motors of one power train.
+Result<void> setMotorsOfTrainUnknown(AddressSpace& nodes, const Names& names, const NodeId& train) {
+    METIER_ASSIGN(const auto parts, nodes.browse(train, {opcua::ids::kHasComponent}));
+    for (const auto& part : parts) {
+        if (part.type_definition == NodeId(names.robotics, kMotorTypeId)) {
+            METIER_TRY(setUnknown(nodes, part.target, names.parameter("MotorTemperature")));
+        }
+    }
+    return {};
+}
+
 Result<void> setMotorsUnknown(AddressSpace& nodes, const Names& names, const NodeId& device) {
     METIER_ASSIGN(const auto trains, within(nodes, device, {names.robotics, "PowerTrains"}));
     for (const auto& train : trains) {
-        METIER_ASSIGN(const auto parts, nodes.browse(train.target, {opcua::ids::kHasComponent}));
-        for (const auto& part : parts) {
-            if (part.type_definition == NodeId(names.robotics, kMotorTypeId)) {
-                METIER_TRY(setUnknown(nodes, part.target, names.parameter("MotorTemperature")));
-            }
-        }
+        METIER_TRY(setMotorsOfTrainUnknown(nodes, names, train.target));
     }
     return {};
 }

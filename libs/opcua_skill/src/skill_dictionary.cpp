@@ -84,21 +84,30 @@ Result<NodeId> addEntry(AddressSpace& nodes, const NodeId& folder, const Term& t
                             .type = kUriDictionaryEntryType});
 }
 
+using TypesByName = std::map<std::string, NodeId, std::less<>>;
+
+/// References from the types of a term that are there to its entry.
+Result<void> addReferences(AddressSpace& nodes, const TypesByName& types, const Term& term,
+                           const NodeId& entry) {
+    for (const auto name : term.types) {
+        if (const auto type = types.find(name); type != types.end()) {
+            METIER_TRY(nodes.addReference(type->second, kHasDictionaryEntry, entry));
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<void> publishDictionary(AddressSpace& nodes) {
     METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
     METIER_ASSIGN(const auto device, nodes.namespaceIndex(kDeviceUri));
-    std::map<std::string, NodeId, std::less<>> types;
+    TypesByName types;
     METIER_TRY(collectTypes(nodes, NodeId(device, kSkillTypeId), types));
     METIER_ASSIGN(const auto folder, addFolder(nodes, metier));
     for (const auto& term : terms()) {
         METIER_ASSIGN(const auto entry, addEntry(nodes, folder, term));
-        for (const auto name : term.types) {
-            if (const auto type = types.find(name); type != types.end()) {
-                METIER_TRY(nodes.addReference(type->second, kHasDictionaryEntry, entry));
-            }
-        }
+        METIER_TRY(addReferences(nodes, types, term, entry));
     }
     return {};
 }

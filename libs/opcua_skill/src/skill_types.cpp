@@ -360,25 +360,30 @@ private:
             const auto eu = toOpcua(unit);
             addStandardProperty(
                 path, "EngineeringUnits", kEuInformation,
-                fmt::format("<uax:EUInformation><uax:NamespaceUri>{}</uax:NamespaceUri>"
-                            "<uax:UnitId>{}</uax:UnitId><uax:DisplayName><uax:Text>{}</uax:Text>"
-                            "</uax:DisplayName><uax:Description><uax:Text>{}</uax:Text>"
-                            "</uax:Description></uax:EUInformation>",
-                            escaped(eu.namespace_uri), eu.unit_id, escaped(eu.display_name.text),
-                            escaped(eu.description.text)),
-                "i=888");
+                {"i=888",
+                 fmt::format("<uax:EUInformation><uax:NamespaceUri>{}</uax:NamespaceUri>"
+                             "<uax:UnitId>{}</uax:UnitId><uax:DisplayName><uax:Text>{}</uax:Text>"
+                             "</uax:DisplayName><uax:Description><uax:Text>{}</uax:Text>"
+                             "</uax:Description></uax:EUInformation>",
+                             escaped(eu.namespace_uri), eu.unit_id, escaped(eu.display_name.text),
+                             escaped(eu.description.text))});
         }
         if (range) {
             addStandardProperty(path, "EURange", kRange,
-                                fmt::format("<uax:Range><uax:Low>{}</uax:Low><uax:High>{}"
-                                            "</uax:High></uax:Range>",
-                                            range->low, range->high),
-                                "i=885");
+                                {"i=885", fmt::format("<uax:Range><uax:Low>{}</uax:Low><uax:High>{}"
+                                                      "</uax:High></uax:Range>",
+                                                      range->low, range->high)});
         }
     }
 
+    /// A structure in XML.
+    struct Structure {
+        std::string_view encoding;
+        std::string body;
+    };
+
     void addStandardProperty(const std::string& path, std::string_view name, const NodeId& type,
-                             const std::string& body, std::string_view encoding) {
+                             const Structure& value) {
         add({.element = "UAVariable",
              .path = fmt::format("{}/{}", path, name),
              .name = std::string(name),
@@ -390,7 +395,7 @@ private:
              .value = fmt::format("<uax:ExtensionObject><uax:TypeId><uax:Identifier>{}"
                                   "</uax:Identifier></uax:TypeId><uax:Body>{}</uax:Body>"
                                   "</uax:ExtensionObject>",
-                                  encoding, body)});
+                                  value.encoding, value.body)});
     }
 
     /// A number with a unit is a Variable, since Properties have no properties of their own.

@@ -35,18 +35,25 @@ std::vector<Eigen::Quaterniond> orientations(const Eigen::Quaterniond& current, 
             turned * Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitY())};
 }
 
+/// Adds the candidates in one direction from the base.
+void addCandidates(double azimuth, double reach,
+                   const std::vector<Eigen::Quaterniond>& orientations,
+                   std::vector<Candidate>& candidates) {
+    for (double radius = 0.3; radius < 0.9; radius += 0.1) {
+        for (double height = 0.1; height < 0.9; height += 0.1) {
+            for (const auto& orientation : orientations) {
+                candidates.push_back({azimuth, radius * reach, height * reach, orientation});
+            }
+        }
+    }
+}
+
 std::vector<Candidate> candidates(const Kinematics& arm, const motion::Pose& now) {
     const double azimuth = std::atan2(now.translation.y(), now.translation.x());
     std::vector<Candidate> result;
     for (const double turn : {0.0, -0.5, 0.5}) {
-        for (double radius = 0.3; radius < 0.9; radius += 0.1) {
-            for (double height = 0.1; height < 0.9; height += 0.1) {
-                for (const auto& orientation : orientations(now.rotation, azimuth + turn)) {
-                    result.push_back(
-                        {azimuth + turn, radius * arm.reach(), height * arm.reach(), orientation});
-                }
-            }
-        }
+        addCandidates(azimuth + turn, arm.reach(), orientations(now.rotation, azimuth + turn),
+                      result);
     }
     return result;
 }

@@ -145,7 +145,7 @@ Result<std::int64_t> RowWriter::kindOf(const ExecutionRow& execution) {
                     listOf(kColumns), parametersOf(kColumns, kParameter, ", "));
     static const auto kFind =
         fmt::format("SELECT kind FROM kinds WHERE {}", parametersOf(kColumns, kEquality, " AND "));
-    const auto kind = insertOrFind(kInsert, kFind, values);
+    auto kind = insertOrFind(kInsert, kFind, values);
     if (kind) {
         kinds_.emplace(std::move(key), *kind);
     }

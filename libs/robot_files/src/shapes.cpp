@@ -306,29 +306,30 @@ std::vector<motion::ToolFrame> readTools(const ChosenChain& chain, Angles angles
     return tools;
 }
 
+/// How many pairs of shapes two groups of links make, and how many of them are disabled.
+PairCount countPairs(const RobotTree& tree, const Semantics& semantics, const LinkGroup& first,
+                     const LinkGroups::value_type& second) {
+    PairCount counted;
+    for (const auto& a : first) {
+        for (const auto& b : second) {
+            if (hasCollision(tree, a) && hasCollision(tree, b)) {
+                ++counted.all;
+                const auto& name = tree.links()[a.link].name;
+                counted.disabled += semantics.isDisabled(name, tree.links()[b.link].name) ? 1 : 0;
+            }
+        }
+    }
+    return counted;
+}
+
 std::vector<motion::UncomparedLinks> readUncompared(const RobotTree& tree, const LinkGroups& groups,
                                                     const Semantics& semantics,
                                                     std::vector<std::string>& remarks) {
     std::vector<motion::UncomparedLinks> pairs;
     std::vector<std::string> partly;
-    const auto count = [&](std::size_t first, std::size_t second) {
-        PairCount counted;
-        for (const auto& a : groups[first]) {
-            for (const auto& b : groups[second]) {
-                if (hasCollision(tree, a) && hasCollision(tree, b)) {
-                    ++counted.all;
-                    counted.disabled +=
-                        semantics.isDisabled(tree.links()[a.link].name, tree.links()[b.link].name)
-                            ? 1
-                            : 0;
-                }
-            }
-        }
-        return counted;
-    };
     for (std::size_t first = 0; first < groups.size(); ++first) {
         for (auto second = first + motion::kLeastJointsBetween; second < groups.size(); ++second) {
-            const auto counted = count(first, second);
+            const auto counted = countPairs(tree, semantics, groups[first], groups[second]);
             if (counted.all > 0 && counted.disabled == counted.all) {
                 pairs.push_back({first, second});
             } else if (counted.disabled > 0) {

@@ -17,9 +17,10 @@ struct HeldLink {
     motion::Pose frame_from_link;
 };
 
-/// The links of a file that are one link of a model: element 0 those of the base, element i those
-/// that axis i moves.
-using LinkGroups = std::vector<std::vector<HeldLink>>;
+/// The links of a file that are one link of a model.
+using LinkGroup = std::vector<HeldLink>;
+/// Element 0 holds those of the base, element i those that axis i moves.
+using LinkGroups = std::vector<LinkGroup>;
 
 /// Notes errors in the file.
 LinkGroups groupLinks(const ChosenChain& chain, Angles angles);

@@ -38,7 +38,7 @@ Result<void> Program::writeReady(const Caller& caller, const Field& field, Value
     METIER_TRY(checkControl(caller));
     METIER_TRY(parameters_.checkAccess(caller.session_id));
     METIER_TRY(checkValue(field, value));
-    parameters_.write(field, std::move(value));
+    parameters_.write(field, value);
     last_write_ = clock_.now();
     if (!parameters_.isBound()) {
         parameters_.bind(caller.session_id);
@@ -62,7 +62,7 @@ Result<void> Program::writeLive(const Caller& caller, const Field& field, const 
         static_cast<void>(guarded([&] { work_->inputRefused(field.name, taken.error()); }));
         return metier::fail(std::move(taken.error()));
     }
-    parameters_.write(field, std::move(*taken));
+    parameters_.write(field, *taken);
     return {};
 }
 

@@ -73,7 +73,7 @@ Result<std::set<std::string>> anchorsOf(const AuditOptions& options) {
     constexpr std::size_t kDigits = 64;
     std::set<std::string> anchors;
     for (const auto& given : options.anchors) {
-        const auto anchor = inLowerCase(given);
+        auto anchor = inLowerCase(given);
         if (anchor.size() != kDigits ||
             anchor.find_first_not_of("0123456789abcdef") != std::string::npos) {
             return fail(Errc::invalid_argument,

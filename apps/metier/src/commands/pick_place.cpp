@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -200,14 +201,16 @@ Result<Exit> runPickPlace(const PickPlaceOptions& options, const CommandIdentity
     return pickAndPlace(identity, urls, options.settings);
 }
 
-/// An option that is a list of numbers, as "0.3,-0.1,0.2,3.14,0,0".
+/// An option that is a frame or a vector, as "0.3,-0.1,0.2,3.14,0,0".
 template <typename T>
-void addNumbers(CLI::App& command, const std::string& name, T& target, skill::ValueType type,
+void addNumbers(CLI::App& command, const std::string& name, T& target,
                 const std::string& description) {
+    constexpr auto kNotation =
+        std::is_same_v<T, Frame> ? skill::ValueType::frame : skill::ValueType::vector3;
     command.add_option_function<std::string>(
         name,
-        [&target, type, name](const std::string& text) {
-            const auto value = parseValue(type, text);
+        [&target, name](const std::string& text) {
+            const auto value = parseValue(kNotation, text);
             if (!value) {
                 throw CLI::ValidationError(name, value.error().message);
             }
@@ -217,12 +220,10 @@ void addNumbers(CLI::App& command, const std::string& name, T& target, skill::Va
 }
 
 void addPickPlaceOptions(CLI::App& command, PickPlaceSettings& settings) {
-    addNumbers(command, "--pick", settings.pick, skill::ValueType::frame,
+    addNumbers(command, "--pick", settings.pick,
                "Where the first part is grasped: x,y,z,a,b,c in the robot base frame [m, rad]");
-    addNumbers(command, "--place", settings.place, skill::ValueType::frame,
-               "Where the first part goes");
-    addNumbers(command, "--step", settings.step, skill::ValueType::vector3,
-               "From one part to the next: x,y,z [m]");
+    addNumbers(command, "--place", settings.place, "Where the first part goes");
+    addNumbers(command, "--step", settings.step, "From one part to the next: x,y,z [m]");
     within(command.add_option("--turn", settings.turn,
                               "From one part to the next, about z of the robot base [rad]"),
            -3.15, 3.15);

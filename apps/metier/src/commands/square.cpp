@@ -90,18 +90,25 @@ struct ConnectedArm {
     SquareArm arm;
 };
 
+/// Adds the arms of one server to `found`.
+Result<void> findArmsAt(const CommandIdentity& identity, const std::string& url,
+                        std::vector<ConnectedArm>& found) {
+    METIER_ASSIGN(auto client, connectTo(identity, url));
+    METIER_ASSIGN(auto arms, findSquareArms(*client, url));
+    for (auto& arm : arms) {
+        if (client == nullptr) {
+            METIER_ASSIGN(client, connectTo(identity, url));  // a connection for each arm
+        }
+        found.push_back({std::move(client), std::move(arm)});
+    }
+    return {};
+}
+
 Result<std::vector<ConnectedArm>> findArms(const CommandIdentity& identity,
                                            const std::vector<std::string>& urls) {
     std::vector<ConnectedArm> found;
     for (const auto& url : urls) {
-        METIER_ASSIGN(auto client, connectTo(identity, url));
-        METIER_ASSIGN(auto arms, findSquareArms(*client, url));
-        for (auto& arm : arms) {
-            if (client == nullptr) {
-                METIER_ASSIGN(client, connectTo(identity, url));  // a connection for each arm
-            }
-            found.push_back({std::move(client), std::move(arm)});
-        }
+        METIER_TRY(findArmsAt(identity, url, found));
     }
     if (found.empty()) {
         return fail(Errc::not_found,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -144,9 +145,8 @@ Answer<std::optional<RoboticsArm>> armOf(Questions& questions, const NodeId& sys
 /// Objects that may be the system of the skill's arm, the most likely first.
 Answer<std::vector<NodeId>> systemsOf(Questions& questions, const SkillAddress& skill) {
     std::vector<NodeId> systems;
-    for (auto above = skill.above.rbegin(); above != skill.above.rend(); ++above) {
-        systems.push_back(above->node);
-    }
+    std::transform(skill.above.rbegin(), skill.above.rend(), std::back_inserter(systems),
+                   [](const auto& above) { return above.node; });
     METIER_ASSIGN(const auto device_set,
                   below(questions, opcua::ids::kObjectsFolder, {"DeviceSet"}));
     if (!device_set.isNull()) {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
 
@@ -146,31 +145,32 @@ void StepsCheck::choice(Visit visit, const Then& then) {
         then(impossible(visit, held.error().message));
         return;
     }
-    inOrder(*held ? visit.step.steps : visit.step.otherwise, 0, visit.path,
-            {std::move(visit.before)}, then);
+    inOrder(*held ? visit.step.steps : visit.step.otherwise, visit.path, {std::move(visit.before)},
+            then);
 }
 
 void StepsCheck::eitherBranch(Visit visit, const Then& then) {
-    inOrder(visit.step.steps, 0, visit.path, {visit.before}, [this, visit, then](Finding one) {
-        inOrder(visit.step.otherwise, 0, visit.path, {visit.before},
-                [this, one = std::move(one), then](Finding other) {
-                    for (const auto* branch : std::array<const Finding*, 2>{&one, &other}) {
-                        if (branch->refusal && !(one.refusal && other.refusal)) {
-                            note(branch->refusal->text);
-                        }
-                    }
-                    const bool sure = one.sure && other.sure && !one.refusal && !other.refusal;
-                    if (one.refusal || other.refusal) {
-                        auto found = other.refusal ? one : other;
-                        found.sure = sure;
-                        then(std::move(found));
-                    } else {
-                        then({.after = either(one.after, other.after),
-                              .duration = std::max(one.duration, other.duration),
-                              .sure = sure});
-                    }
+    inOrder(visit.step.steps, visit.path, {visit.before}, [this, visit, then](Finding one) {
+        inOrder(visit.step.otherwise, visit.path, {visit.before},
+                [this, one = std::move(one), then](Finding other) mutable {
+                    then(oneOf(std::move(one), std::move(other)));
                 });
     });
+}
+
+/// What two branches lead to of which the run takes one.
+StepsCheck::Finding StepsCheck::oneOf(Finding one, Finding other) {
+    if (!one.refusal && !other.refusal) {
+        return {.after = either(one.after, other.after),
+                .duration = std::max(one.duration, other.duration),
+                .sure = one.sure && other.sure};
+    }
+    if (!one.refusal || !other.refusal) {
+        note(one.refusal ? one.refusal->text : other.refusal->text);
+    }
+    auto found = other.refusal ? std::move(one) : std::move(other);
+    found.sure = false;
+    return found;
 }
 
 // ---- again and again ----------------------------------------------------------------------------
@@ -216,53 +216,52 @@ void StepsCheck::loop(Visit visit, const Then& then) {
                          describe(visit)));
     }
     auto before = visit.before;
-    round(std::move(visit), *rounds, 1, {std::move(before)}, then);
+    round(std::move(visit), *rounds, {std::move(before)}, then);
 }
 
 /// Ends with the first round that begins where the one before began: all others are as that one.
-void StepsCheck::round(Visit visit, Rounds rounds, std::uint64_t number, Finding so_far,
-                       Then then) {
+void StepsCheck::round(Visit visit, Rounds rounds, Finding so_far, Then then) {
     // A second round shows where an unknown number of rounds leads to.
     const auto most = rounds.known ? rounds.most : std::min<std::uint64_t>(rounds.most, 2);
-    if (number > most || so_far.refusal) {
+    if (rounds.number > most || so_far.refusal) {
         then(std::move(so_far));
         return;
     }
-    if (number > kMostRounds) {
+    if (rounds.number > kMostRounds) {
         note(fmt::format("{}: rounds after the first {} are not checked", describe(visit),
                          kMostRounds));
         so_far.after.move({{std::string(skill::kEveryOtherArm), {}}});
         then(std::move(so_far));
         return;
     }
-    const auto path = fmt::format("{}[{}]", visit.path, number);
+    const auto path = fmt::format("{}[{}]", visit.path, rounds.number);
     const auto& steps = visit.step.steps;
-    inOrder(steps, 0, path, {so_far.after},
-            [this, visit, rounds, number, most, so_far, then](Finding found) {
-                const bool maybe = !rounds.known && (number > 1 || !rounds.needed);
-                const bool sure = so_far.sure && found.sure;
-                if (maybe && found.refusal) {
-                    note(found.refusal->text);
-                    then({.after = so_far.after, .duration = so_far.duration, .sure = false});
-                    return;
-                }
-                if (maybe) {
-                    then({.after = either(so_far.after, found.after),
-                          .duration = so_far.duration,
-                          .sure = sure});
-                    return;
-                }
-                found.sure = sure;
-                const bool settled = samePlaces(so_far.after, found.after);
-                const auto equal_rounds = settled && rounds.known ? most - number + 1 : 1;
-                found.duration =
-                    so_far.duration + found.duration * static_cast<double>(equal_rounds);
-                if (settled || found.refusal) {
-                    then(std::move(found));
-                    return;
-                }
-                round(visit, rounds, number + 1, std::move(found), then);
-            });
+    inOrder(steps, path, {so_far.after}, [this, visit, rounds, most, so_far, then](Finding found) {
+        const bool maybe = !rounds.known && (rounds.number > 1 || !rounds.needed);
+        const bool sure = so_far.sure && found.sure;
+        if (maybe && found.refusal) {
+            note(found.refusal->text);
+            then({.after = so_far.after, .duration = so_far.duration, .sure = false});
+            return;
+        }
+        if (maybe) {
+            then({.after = either(so_far.after, found.after),
+                  .duration = so_far.duration,
+                  .sure = sure});
+            return;
+        }
+        found.sure = sure;
+        const bool settled = samePlaces(so_far.after, found.after);
+        const auto equal_rounds = settled && rounds.known ? most - rounds.number + 1 : 1;
+        found.duration = so_far.duration + found.duration * static_cast<double>(equal_rounds);
+        if (settled || found.refusal) {
+            then(std::move(found));
+            return;
+        }
+        auto next = rounds;
+        ++next.number;
+        round(visit, next, std::move(found), then);
+    });
 }
 
 }  // namespace metier::composition

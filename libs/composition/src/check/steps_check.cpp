@@ -91,7 +91,7 @@ void StepsCheck::start(std::chrono::nanoseconds longest, skill::CheckDone done) 
         giveUp(fmt::format("the used skills have not all answered within {} s",
                            std::chrono::duration<double>(longest).count()));
     });
-    inOrder(setup_.composition.definition.root.steps, 0, "", {begin_}, [this](Finding found) {
+    inOrder(setup_.composition.definition.root.steps, "", {begin_}, [this](Finding found) {
         CheckReport report{.planned_duration = found.duration, .notes = std::move(notes_)};
         if (found.refusal) {
             report.possible = false;
@@ -146,7 +146,7 @@ void StepsCheck::checkStep(const Step& step, const std::string& above, Forecast 
         case StepKind::call:
             return call(std::move(visit), then);
         case StepKind::sequence:
-            return inOrder(step.steps, 0, visit.path, {std::move(visit.before)}, std::move(then));
+            return inOrder(step.steps, visit.path, {std::move(visit.before)}, std::move(then));
         case StepKind::parallel:
             return branches(std::move(visit), std::make_shared<std::vector<Finding>>(), then);
         case StepKind::fallback:
@@ -160,18 +160,18 @@ void StepsCheck::checkStep(const Step& step, const std::string& above, Forecast 
     }
 }
 
-void StepsCheck::inOrder(const std::vector<Step>& steps, std::size_t index, const std::string& path,
-                         Finding so_far, Then then) {
-    if (index == steps.size() || so_far.refusal) {
+void StepsCheck::inOrder(std::span<const Step> steps, const std::string& path, Finding so_far,
+                         Then then) {
+    if (steps.empty() || so_far.refusal) {
         then(std::move(so_far));
         return;
     }
-    checkStep(steps[index], path, std::move(so_far.after),
-              [this, &steps, index, path, before = so_far.duration, sure = so_far.sure,
+    checkStep(steps.front(), path, std::move(so_far.after),
+              [this, later = steps.subspan(1), path, before = so_far.duration, sure = so_far.sure,
                then = std::move(then)](Finding found) {
                   found.duration += before;
                   found.sure = found.sure && sure;
-                  inOrder(steps, index + 1, path, std::move(found), then);
+                  inOrder(later, path, std::move(found), then);
               });
 }
 

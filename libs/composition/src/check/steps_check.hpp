@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -68,8 +69,7 @@ private:
     using Findings = std::shared_ptr<std::vector<Finding>>;  // shared by the visits of branches
 
     void checkStep(const Step& step, const std::string& above, Forecast before, Then then);
-    void inOrder(const std::vector<Step>& steps, std::size_t index, const std::string& path,
-                 Finding so_far, Then then);
+    void inOrder(std::span<const Step> steps, const std::string& path, Finding so_far, Then then);
 
     void call(Visit visit, const Then& then);
     void ask(Visit visit, skill::ValueMap parameters, Then then);
@@ -85,16 +85,18 @@ private:
     void alsoLater(Visit visit, std::size_t index, Finding found, Then then);
     void choice(Visit visit, const Then& then);
     void eitherBranch(Visit visit, const Then& then);
+    Finding oneOf(Finding one, Finding other);
 
     /// Rounds of a loop.
     struct Rounds {
         std::uint64_t most = 0;
-        bool known = false;  ///< whether it will be just `most`
-        bool needed = true;  ///< whether the first one will be in any case
+        bool known = false;        ///< whether it will be just `most`
+        bool needed = true;        ///< whether the first one will be in any case
+        std::uint64_t number = 1;  ///< of the one that is checked
     };
     void loop(Visit visit, const Then& then);
     Result<Rounds> roundsOf(const Step& step) const;
-    void round(Visit visit, Rounds rounds, std::uint64_t number, Finding so_far, Then then);
+    void round(Visit visit, Rounds rounds, Finding so_far, Then then);
 
     Finding impossible(const Visit& visit, const std::string& why) const;
     void note(std::string text);

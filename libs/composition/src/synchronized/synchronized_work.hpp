@@ -73,7 +73,6 @@ private:
     skill::ExecutionHandle execution_;
     Phase phase_ = Phase::asking;
     bool rest_reported_ = false;
-    bool halting_ = false;
     std::optional<ArmFailure> failure_;
     std::uint64_t round_ = 0;  ///< answers to earlier questions are not waited for
     std::size_t pending_ = 0;

@@ -88,19 +88,26 @@ Result<> addAbsent(AddressSpace& nodes, const FieldPair& parent, const Reference
     return {};
 }
 
+/// Adds what is directly below a node, and appends it to `open`.
+Result<> addAbsentBelow(AddressSpace& nodes, const FieldPair& parent,
+                        std::vector<FieldPair>& open) {
+    METIER_ASSIGN(const auto children, nodes.browse(parent.node));
+    for (const auto& child : children) {
+        if (isField(child)) {
+            METIER_TRY(addAbsent(nodes, parent, child));
+            open.push_back({child.target, absentId(parent.absent, child.browse_name)});
+        }
+    }
+    return {};
+}
+
 /// Adds what is below a type, to all depths.
 Result<> addAbsentOf(AddressSpace& nodes, const NodeId& type) {
     std::vector<FieldPair> open{{type, absentRoot()}};
     while (!open.empty()) {
         const auto next = std::move(open.back());
         open.pop_back();
-        METIER_ASSIGN(const auto children, nodes.browse(next.node));
-        for (const auto& child : children) {
-            if (isField(child)) {
-                METIER_TRY(addAbsent(nodes, next, child));
-                open.push_back({child.target, absentId(next.absent, child.browse_name)});
-            }
-        }
+        METIER_TRY(addAbsentBelow(nodes, next, open));
     }
     return {};
 }
@@ -117,6 +124,23 @@ Result<std::vector<Lineage>> eventTypes(const AddressSpace& nodes) {
         }
     }
     return types;
+}
+
+/// Adds to a node the fields that it lacks; appends those that it has to `open`.
+Result<> completeBelow(AddressSpace& nodes, const FieldPair& parent, std::vector<FieldPair>& open) {
+    METIER_ASSIGN(const auto there, nodes.browse(parent.node));
+    METIER_ASSIGN(const auto all, nodes.browse(parent.absent));
+    for (const auto& field : all) {
+        const auto same = std::find_if(there.begin(), there.end(), [&](const Reference& child) {
+            return child.browse_name == field.browse_name;
+        });
+        if (same != there.end()) {
+            open.push_back({same->target, field.target});
+        } else {
+            METIER_TRY(nodes.addReference(parent.node, ids::kHasComponent, field.target));
+        }
+    }
+    return {};
 }
 
 }  // namespace
@@ -147,18 +171,7 @@ Result<> completeFields(AddressSpace& nodes, const NodeId& event) {
     while (!open.empty()) {
         const auto next = std::move(open.back());
         open.pop_back();
-        METIER_ASSIGN(const auto there, nodes.browse(next.node));
-        METIER_ASSIGN(const auto all, nodes.browse(next.absent));
-        for (const auto& field : all) {
-            const auto same = std::find_if(there.begin(), there.end(), [&](const Reference& child) {
-                return child.browse_name == field.browse_name;
-            });
-            if (same != there.end()) {
-                open.push_back({same->target, field.target});
-            } else {
-                METIER_TRY(nodes.addReference(next.node, ids::kHasComponent, field.target));
-            }
-        }
+        METIER_TRY(completeBelow(nodes, next, open));
     }
     return {};
 }

@@ -25,8 +25,8 @@ template <typename Parameters>
 struct MoveVariant {
     skill::SkillDescription description;
     skill::FieldList<Parameters> fields;
-    PathDeviationMeter::Path path;
-    MoveEnd end;
+    PathDeviationMeter::Path path{};
+    MoveEnd end{};
     MovePlan<Parameters> plan;
 };
 }  // namespace metier::robot_skills

@@ -180,8 +180,9 @@ Result<composition::SequenceSkill*> publishSequence(SkillHost& host, const opcua
     METIER_ASSIGN(auto composed, composition::compose(sequence.definition, descriptions));
     METIER_TRY(declareOwnType(host, sequence.definition, composed.description));
     auto made = std::make_unique<composition::SequenceSkill>(
-        std::move(composed), std::move(sequence.used_skills), host.skills().executor(),
-        host.clock(), std::move(sequence.origin));
+        std::move(composed), std::move(sequence.used_skills),
+        composition::SequenceSkill::Host{host.skills().executor(), host.clock(),
+                                         std::move(sequence.origin)});
     auto* const skill = made.get();
     METIER_TRY(
         host.skills().publish(skills, std::move(made),

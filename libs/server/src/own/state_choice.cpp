@@ -13,7 +13,7 @@ std::filesystem::path stateFolder(const std::filesystem::path& given, std::uint1
     if (!given.empty()) {
         return given;
     }
-    const auto folder = port == 0 ? std::filesystem::path() : userStateFolder();
+    auto folder = port == 0 ? std::filesystem::path() : userStateFolder();
     std::error_code error;
     if (!folder.empty() && !std::filesystem::create_directories(folder, error) && error) {
         spdlog::warn("{}: {}; after a restart a repeated StartWith may start again",

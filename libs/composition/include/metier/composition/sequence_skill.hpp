@@ -36,8 +36,9 @@ using BoundSkills = std::map<std::string, BoundSkill, std::less<>>;
 /// A skill that runs other skills, as a file says:
 ///
 ///     auto composition = compose(*loadDefinition("pick.toml"), descriptions);
-///     auto skill = std::make_unique<SequenceSkill>(*composition, std::move(used_skills), executor,
-///                                                  clock, "pick.PickPlaceSkill~3f09a2");
+///     auto skill = std::make_unique<SequenceSkill>(
+///         *composition, std::move(used_skills),
+///         SequenceSkill::Host{executor, clock, "pick.PickPlaceSkill~3f09a2"});
 ///
 /// Each execution of a used skill gets the id "ORIGIN/EXECUTION/STEP/COUNT". Suspend, Resume and
 /// Halt reach every skill that runs; the whole is at rest once all these are. After a failure none
@@ -45,16 +46,20 @@ using BoundSkills = std::map<std::string, BoundSkill, std::less<>>;
 /// Threading: the owner's thread, which all used skills report to.
 class SequenceSkill final : public skill::Skill {
 public:
+    /// What a composed skill is run by.
+    struct Host {
+        /// Of the owner's thread; not null.
+        std::shared_ptr<skill::Executor> executor;
+        /// Must outlive the skill.
+        const Clock& clock;
+        /// Names the component, the skill, and this run of the component, so that no id occurs
+        /// twice: "pick-server.PickPlaceSkill~3f09a2".
+        std::string origin;
+    };
     /// \param used_skills one for each alias of the composition; throws std::out_of_range without
     ///                    one
-    /// \param executor    of the owner's thread
-    /// \param clock       must outlive this
-    /// \param origin      names the component, the skill, and this run of the component, so that no
-    ///                    id occurs twice: "pick-server.PickPlaceSkill~3f09a2"
     SequenceSkill(Composition composition,
-                  std::map<std::string, std::unique_ptr<UsedSkill>> used_skills,
-                  std::shared_ptr<skill::Executor> executor, const Clock& clock,
-                  std::string origin);
+                  std::map<std::string, std::unique_ptr<UsedSkill>> used_skills, Host host);
 
     /// Ends the checks that are under way; their answers do not come.
     ~SequenceSkill() override;

@@ -50,7 +50,7 @@ public:
 private:
     DiscoveryServer();
 
-    const SystemClock clock_;
+    const SystemClock clock_{};
     std::unique_ptr<ServerAccess> access_;  // none in an insecure lab
     std::unique_ptr<opcua::Server> server_;
 };
