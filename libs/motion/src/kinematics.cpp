@@ -60,7 +60,7 @@ Transform compose(const Transform& a, const Transform& b) noexcept {
     return {a.rotation * b.rotation, a.translation + a.rotation * b.translation};
 }
 
-Pose toPose(const Transform& transform) noexcept {
+Pose poseOf(const Transform& transform) noexcept {
     return {transform.translation, Eigen::Quaterniond(transform.rotation)};
 }
 
@@ -135,10 +135,10 @@ std::array<Pose, kMaxAxes + 1> Kinematics::forwardAll(const JointVector& q) cons
     Transform frame;
     for (std::size_t i = 0; i < axis_count_; ++i) {
         advance(frame, fixed_[i], q[i]);
-        poses[i] = toPose(frame);
+        poses[i] = poseOf(frame);
         poses[i].rotation = poses[i].rotation * axis_from_joint_[i];
     }
-    poses[axis_count_] = toPose(compose(frame, last_from_flange_));
+    poses[axis_count_] = poseOf(compose(frame, last_from_flange_));
     return poses;
 }
 

@@ -16,7 +16,7 @@
 namespace metier::virtual_controller {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds kLookForSolitude{10};
 
@@ -93,8 +93,8 @@ void Host::awaitSolitude(SteadyTime deadline) {
     });
 }
 
-Json Host::controlAnswer(std::string_view line) {
-    const auto request = Json::parse(line, nullptr, false);
+OrderedJson Host::controlAnswer(std::string_view line) {
+    const auto request = OrderedJson::parse(line, nullptr, false);
     if (request.is_object() && request.contains("inject") && request.at("inject").is_string()) {
         const Injection injection{request.at("inject").get<std::string>(),
                                   request.contains("value") && request.at("value").is_string()
@@ -109,7 +109,7 @@ Json Host::controlAnswer(std::string_view line) {
         return controller_->state();
     }
     if (request.is_object() && request.contains("help")) {
-        auto answer = Json::object();
+        auto answer = OrderedJson::object();
         for (const auto& known : injections()) {
             answer[known.name] = known.help;
         }

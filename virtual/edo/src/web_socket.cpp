@@ -8,7 +8,7 @@
 namespace metier::virtual_edo {
 namespace {
 
-enum Opcode : std::uint8_t {
+enum FrameKind : std::uint8_t {
     continuation = 0x0,
     text = 0x1,
     binary = 0x2,
@@ -78,7 +78,7 @@ Header headerOf(std::string_view bytes) {
 bool isLawful(std::uint8_t first, std::uint8_t second) {
     const std::uint8_t opcode = first & 0x0FU;
     const bool is_control = (opcode & 0x8U) != 0;
-    const bool known = opcode <= Opcode::binary || (is_control && opcode <= Opcode::pong);
+    const bool known = opcode <= FrameKind::binary || (is_control && opcode <= FrameKind::pong);
     const bool masked = (second & 0x80U) != 0;
     const bool reserved = (first & 0x70U) != 0;
     const bool whole = (first & 0x80U) != 0 && (second & 0x7FU) <= kLongestControl;
@@ -88,7 +88,7 @@ bool isLawful(std::uint8_t first, std::uint8_t second) {
 }  // namespace
 
 std::string WebSocket::textFrame(std::string_view message) {
-    return frame(Opcode::text, message);
+    return frame(FrameKind::text, message);
 }
 
 WebSocket::Received WebSocket::receive(std::span<const std::byte> bytes) {
@@ -157,11 +157,11 @@ bool WebSocket::takeFrame(Received& received) {
 }
 
 void WebSocket::onControl(const Frame& taken, Received& received) {
-    if (taken.opcode == Opcode::ping) {
-        received.answer += frame(Opcode::pong, taken.payload);
+    if (taken.opcode == FrameKind::ping) {
+        received.answer += frame(FrameKind::pong, taken.payload);
         return;
     }
-    if (taken.opcode == Opcode::pong) {
+    if (taken.opcode == FrameKind::pong) {
         return;
     }
     const std::string_view payload = taken.payload;
@@ -171,13 +171,13 @@ void WebSocket::onControl(const Frame& taken, Received& received) {
         fail(kProtocolError, received);
         return;
     }
-    received.answer += frame(Opcode::close, payload.substr(0, 2));
+    received.answer += frame(FrameKind::close, payload.substr(0, 2));
     state_ = State::closed;
     received.close = true;
 }
 
 void WebSocket::onData(const Frame& taken, Received& received) {
-    if ((taken.opcode == Opcode::continuation) != fragmented_) {
+    if ((taken.opcode == FrameKind::continuation) != fragmented_) {
         fail(kProtocolError, received);
         return;
     }
@@ -195,7 +195,7 @@ void WebSocket::onData(const Frame& taken, Received& received) {
 
 void WebSocket::fail(std::uint16_t status, Received& received) {
     const std::array code{static_cast<char>(status >> 8), static_cast<char>(status & 0xFFU)};
-    received.answer += frame(Opcode::close, {code.data(), code.size()});
+    received.answer += frame(FrameKind::close, {code.data(), code.size()});
     received.close = true;
     state_ = State::closed;
     incoming_.clear();

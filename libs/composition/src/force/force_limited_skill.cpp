@@ -18,7 +18,7 @@ using skill::Reason;
 using skill::Vector3;
 
 // Shorter than a composed skill waits for used skills to come to rest.
-constexpr auto kLongestReset = 4s;
+constexpr auto kLongestSkillReset = 4s;
 // As a composed skill waits for them.
 constexpr auto kLongestHalt = 6s;
 constexpr auto kPause = 100ms;
@@ -384,7 +384,7 @@ void ForceLimitedSkill::onEnd(UsedSkillEnd end) {
     if (ours && exceeded_ && !parameters_.halt_on_force) {
         end_ = endByForce({});
         stage_ = Stage::is_reset;
-        reset_limit_ = clock_.now() + kLongestReset;
+        reset_limit_ = clock_.now() + kLongestSkillReset;
         askReset();
     } else if ((ours || finished) && exceeded_) {
         report(endByForce(std::move(end.result)));
