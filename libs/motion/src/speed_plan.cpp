@@ -189,6 +189,7 @@ public:
             include(u * profile.steadyFrom());
             include(profile.duration() + u * (profile.steadyTo() - profile.duration()));
         }
+        includeBends(profile);
     }
     /// Factor by which the duration has to grow.
     double factor() const noexcept { return factor_; }
@@ -201,6 +202,17 @@ private:
     static constexpr double kBetween = 1.03;
     /// Share of the jerk limit above which steps may hide a peak over it.
     static constexpr double kPeak = 0.92;
+
+    /// Includes both sides of the places where the clock's jerk changes: accelerations have their
+    /// peaks there.
+    void includeBends(const Profile& profile) noexcept {
+        double time = 0;
+        for (std::size_t piece = 0; piece + 1 < profile.pieceCount(); ++piece) {
+            time += profile.pieceDuration(piece);
+            include(time * (1 - 1e-9));
+            include(time * (1 + 1e-9));
+        }
+    }
 
     /// Time at which the clock has this value [s].
     double timeAt(double clock) const noexcept {

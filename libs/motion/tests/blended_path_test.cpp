@@ -233,6 +233,39 @@ TEST(BlendedPath, WithOneSlowLineIsFiniteAndAsLongAsItSays) {
     EXPECT_LE(maxDifference(before, plan->end()), 1e-9);
 }
 
+// Where the clock of a plan begins to stop, its acceleration has a peak: here 1.043 of the limit,
+// between the places at which the plan was checked.
+TEST(BlendedPath, KeepsItsAccelerationAlsoWhereItsClockBeginsToStop) {
+    const auto model = loadRobot("iiwa7");
+    constexpr double acceleration = 0.0042662351161173095;
+    constexpr double radius = 1.001e-6;
+    PathRequest request;
+    request.lin.start = JointVector{0.36262699302789947, 0.5268124340485221,  0.22922540683123027,
+                                    -1.4994290910304935, -0.1662219951277233, 1.4252860513862426,
+                                    0.1720711387183198};
+    request.lin.reference = TargetReference::relative_base;
+    request.lin.max_acceleration = {acceleration, acceleration, acceleration, 0.01, 0.01, 0.01};
+    const auto line = [](double x, double y, double z) {
+        return PathWaypoint{{{x, y, z}, Eigen::Quaterniond::Identity()}, radius};
+    };
+    request.waypoints = {
+        line(0.1885052036394676, -0.03326180187718767, -0.09754160550234743),
+        line(0, 0, -0.019451430902331517), line(0, 0.0003219657403946937, 0),
+        line(0.0003337162186053988, -0.00014689399799550526, -0.00017979037370414292)};
+    const auto plan = Planner(model).path(request);
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    constexpr double step = 1e-3;
+    const auto place = [&](double time) {
+        return plan->toolPose(plan->sample(Seconds(time)).position).translation;
+    };
+    double largest = 0;
+    for (double time = step; time < plan->duration().count(); time += 2 * step) {
+        const Eigen::Vector3d bend = place(time + step) - 2 * place(time) + place(time - step);
+        largest = std::max(largest, bend.norm() / (step * step));
+    }
+    EXPECT_LE(largest, 1.01 * acceleration);
+}
+
 TEST(BlendedPath, RefusesTheSamePoseTwiceInARowButMayBeginWhereTheArmStands) {
     const RobotModel model = loadRobot("iiwa7");
     PathRequest request = roundedSquare(model);

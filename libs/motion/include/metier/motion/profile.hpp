@@ -61,6 +61,10 @@ public:
     ScalarState at(double time) const noexcept;
     /// Jerk after `time` [s]; 0 after duration(), that of the start before 0.
     double jerkAt(double time) const noexcept;
+    /// Number of its parts of constant jerk.
+    std::size_t pieceCount() const noexcept { return piece_count_; }
+    /// Duration of one of them, in the order of time [s].
+    double pieceDuration(std::size_t piece) const noexcept { return pieces_.at(piece).duration; }
     /// Position at the end, at rest.
     double end() const noexcept { return end_; }
     /// Begin of the part with constant velocity [s]; steadyTo() if the velocity is constant
