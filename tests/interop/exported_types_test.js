@@ -1,5 +1,6 @@
 // Skill types that `metier types export` writes, in the address space of another maker: node-opcua
-// loads them, and makes instances of them with all mandatory children.
+// loads them, and makes instances of them with all mandatory children; open62541's compiler takes
+// them. A server that declares them itself is found by their properties.
 'use strict';
 
 const assert = require('node:assert');
@@ -7,24 +8,33 @@ const fs = require('node:fs');
 const os = require('node:os');
 const path = require('node:path');
 const { after, test } = require('node:test');
-const { runMetier } = require('./metier_process');
+const { execFileSync } = require('node:child_process');
+const { runMetier, startServer } = require('./metier_process');
 
 const { AddressSpace, coerceLocalizedText } = require('node-opcua');
 const { generateAddressSpace } = require('node-opcua-address-space/nodeJS');
 const { nodesets } = require('node-opcua-nodesets');
 
 const kUri = 'urn:example:welding';
+const kTypes = path.join(__dirname, 'welding.toml');
+const kTools = process.env.OPEN62541_TOOLS;
 const kOwn = path.join(__dirname, '..', '..', 'nodesets');
 const kDirectory = fs.mkdtempSync(path.join(os.tmpdir(), 'metier-types-'));
 
 after(() => fs.rmSync(kDirectory, { recursive: true, force: true }));
 
-/** The NodeSet of welding.toml and an address space with it. */
-async function load() {
-  const { status, output, errors } = await runMetier(['types', 'export', path.join(__dirname, 'welding.toml')]);
+/** The file of the NodeSet of welding.toml. */
+async function exportTypes() {
+  const { status, output, errors } = await runMetier(['types', 'export', kTypes]);
   assert.strictEqual(status, 0, errors);
   const file = path.join(kDirectory, 'Welding.NodeSet2.xml');
   fs.writeFileSync(file, output);
+  return file;
+}
+
+/** An address space with that NodeSet. */
+async function load() {
+  const file = await exportTypes();
   const addressSpace = AddressSpace.create();
   addressSpace.registerNamespace('urn:test:own');
   await generateAddressSpace(addressSpace, [
@@ -79,4 +89,47 @@ test('mistakes of a file of types are named with their lines', async () => {
   const { status, errors } = await runMetier(['types', 'export', file]);
   assert.notStrictEqual(status, 0);
   assert.match(errors, /wrong\.toml:4: .*bse/);
+});
+
+test('exported skill types are taken by the compiler of open62541', { skip: !kTools && 'OPEN62541_TOOLS is not set' },
+  async () => {
+    const code = path.join(kDirectory, 'namespace_welding');
+    const needed = [
+      path.join(process.env.OPEN62541_SCHEMA, 'Opc.Ua.NodeSet2.xml'), nodesets.di, nodesets.robotics,
+      ...['device', 'robotics', 'metier'].map((name) => path.join(kOwn, name, 'NodeSet2.xml')),
+    ];
+    execFileSync('python3', [
+      path.join(kTools, 'nodeset_compiler', 'nodeset_compiler.py'),
+      ...needed.map((file) => `--existing=${file}`), `--xml=${await exportTypes()}`,
+      ...['', '_DI', '_ROB', '_DEVICE', '_METIER'].map((array) => `--types-array=UA_TYPES${array}`), code,
+    ], { stdio: 'inherit' });
+    const made = fs.readFileSync(`${code}.c`, 'utf8');
+    for (const name of ['SpotWeldSkillType', 'CarefulMoveSkillType', 'Force', 'ControlFrequency']) {
+      assert.match(made, new RegExp(`"${name}"`));
+    }
+  });
+
+test('find asks for the properties that a server declares for a type', async () => {
+  const cell = path.join(kDirectory, 'cell.toml');
+  fs.writeFileSync(cell, `
+name = "careful"
+[[server]]
+name = "arm"
+kind = "arm"
+driver = { type = "simulator" }
+model = "${path.join(__dirname, '..', '..', 'models', 'ur5.toml')}"
+skills = ["JointPtpMoveSkill", "CartesianPtpMoveSkill"]
+types = ["${kTypes}"]
+`);
+  const arm = await startServer(['serve', cell, '--server', 'arm', '--port', '0']);
+  try {
+    const find = (type, wish) => runMetier(['find', type, '--at', arm.url, '--property', wish]);
+    const accurate = await find('JointPtpMoveSkillType', 'Accuracy<=0.001');
+    assert.strictEqual(accurate.status, 0, accurate.output);
+    assert.match(accurate.output, /JointPtpMoveSkill fits: .*Accuracy/);
+    assert.strictEqual((await find('JointPtpMoveSkillType', 'Accuracy<=0.00001')).status, 1);
+    assert.strictEqual((await find('CartesianPtpMoveSkillType', 'Accuracy<=0.001')).status, 1);
+  } finally {
+    await arm.stop();
+  }
 });

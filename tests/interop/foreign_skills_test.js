@@ -50,7 +50,7 @@ for (const skill of kSkills) {
   });
 }
 
-for (const skill of ['Whole', 'WithoutEvents', 'NamesOnly']) {
+for (const skill of ['Whole', 'WithoutEvents', 'NamesOnly', 'OwnMethods']) {
   test(`${skill} is suspended and goes on, as watch shows`, async () => {
     const watching = await startMetier(['watch', server.url, skill, '--count', '4'], /watching/);
     const running = run(skill, '--set', 'Duration=4');
@@ -99,6 +99,23 @@ test('run records what the server does not: parameters, Suspend, result, refusal
     assert.match(transitions[0].reason_text, /no atomic start, no dead-man/);
   } finally {
     fs.rmSync(folder, { recursive: true });
+  }
+});
+
+test('Ctrl-C of run halts what has a Halt, and halt finds it Halted', async () => {
+  const lamps = await startProcess(process.execPath, [kProgram]);
+  try {
+    for (const skill of kSkills.filter((name) => name !== 'StartOnly')) {
+      const running = await startMetier(['run', lamps.url, skill, '--set', 'Duration=30'], /Running/);
+      await awaitState(lamps.url, skill, 'Running');
+      running.interrupt();
+      assert.notStrictEqual((await running.end).status, 0);
+      await awaitState(lamps.url, skill, 'Halted');
+      const again = await runMetier(['halt', lamps.url, '--skill', skill]);
+      assert.strictEqual(again.status, 0, again.errors);
+    }
+  } finally {
+    await lamps.stop();
   }
 });
 
@@ -293,7 +310,7 @@ test('a wrong type and an unknown parameter are refused before anything starts',
 /** A component that runs Programs of the server at `url`. */
 async function startComposition(url) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'foreign_skills_'));
-  const skills = ['Whole', 'WithoutEvents', 'NamesOnly'];
+  const skills = ['Whole', 'WithoutEvents', 'NamesOnly', 'OwnMethods'];
   for (const skill of skills) {
     fs.writeFileSync(path.join(folder, `${skill}.toml`), `
 name = "Use${skill}"
@@ -339,7 +356,7 @@ test('a composition runs, halts and loses skills of another maker', async () => 
   const lamps = await startProcess(process.execPath, [kProgram]);
   const component = await startComposition(lamps.url);
   try {
-    for (const skill of ['Whole', 'WithoutEvents', 'NamesOnly']) {
+    for (const skill of ['Whole', 'WithoutEvents', 'NamesOnly', 'OwnMethods']) {
       const use = (...more) => runMetier(['run', component.url, `Use${skill}`, ...more]);
       for (const [count, duration] of [[1, 0.3], [2, 0], [3, 0.05]]) {
         const done = await use('--set', `Duration=${duration}`);

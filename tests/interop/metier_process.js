@@ -96,8 +96,8 @@ function runMetier(args, security = kLab) {
  *
  * @param {string[]} args
  * @param {RegExp} begun is in the line that it prints, to either output, once it is under way
- * @returns {Promise<{end: Promise<{status: number, output: string}>}>} once that line is there;
- *     `end` has all that it printed
+ * @returns {Promise<{end: Promise<{status: number, output: string}>, interrupt: () => void}>} once
+ *     that line is there; `end` has all that it printed; interrupt() is Ctrl-C
  */
 function startMetier(args, begun) {
   const child = spawn(metierProgram(), [...kLab, ...args], { stdio: ['ignore', 'pipe', 'pipe'] });
@@ -113,7 +113,7 @@ function startMetier(args, begun) {
         output += text;
         if (begun.test(output)) {
           clearTimeout(timer);
-          resolve({ end });
+          resolve({ end, interrupt: () => child.kill('SIGINT') });
         }
       });
     }

@@ -263,6 +263,18 @@ TEST(FoundServersOfAFolder, AreThoseOfItsCellFile) {
     std::filesystem::remove_all(folder);
 }
 
+TEST_F(Find, LetsSquareMoveEveryArmThatIsFound) {
+    ASSERT_TRUE(known_);
+    const auto svg = ::testing::TempDir() + "found_square.svg";
+    const auto run =
+        runMetier({"square", "--discovery", lds_.url(), "--laps", "1", "--json", "--svg", svg},
+                  Errors::left_out);
+    EXPECT_EQ(run.status, 0) << run.output;
+    const auto arms = nlohmann::json::parse(run.output);
+    EXPECT_EQ(arms.size(), 2U) << run.output;
+    std::filesystem::remove(svg);
+}
+
 TEST(FoundServersOfNobody, AreAFailureThatSaysWhereItLooked) {
     for (const auto& line : std::vector<std::vector<std::string>>{
              {"list"}, {"run", "AnySkill"}, {"watch"}, {"halt"}, {"square"}, {"pick-place"}}) {
@@ -295,6 +307,9 @@ TEST_F(Find, NamesWhatFitsEachSkillThatACompositionUses) {
     EXPECT_EQ(plan.at("roles").at(0).at("role"), "ptp");
     EXPECT_EQ(plan.at("roles").at(0).at("candidates").size(), 2U) << "of either arm";
     EXPECT_TRUE(plan.at("roles").at(1).at("candidates").empty());
+    const auto left_out = find({compositionFile("corner_if_possible.toml")});
+    EXPECT_EQ(left_out.status, 0) << left_out.output;
+    EXPECT_THAT(left_out.output, HasSubstr("nothing fits; its steps are left out"));
     const auto strong = find({compositionFile("corner.toml"), "--payload", "5"});
     EXPECT_EQ(strong.status, 0);
     EXPECT_THAT(strong.output, HasSubstr("payload unknown")) << "of the other arm";

@@ -1,6 +1,9 @@
 // A force move that ends at a sensor's force: what it does when the sensor or its cable fails.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "metier_program.hpp"
@@ -109,6 +112,22 @@ INSTANTIATE_TEST_SUITE_P(Netft, BearableFaultOfTheSensor,
                                            Bearable{"garbled_record", "garble", "1"},
                                            Bearable{"latched_warning", "warning", ""}),
                          [](const auto& fault) { return std::string(fault.param.name); });
+
+// The line and the force that ends it are of one server; the component between them is another.
+TEST(CellWithAPress, EndsALineByTheForceOfTheArmsOwnServer) {
+    const RunningCell cell(std::filesystem::path(METIER_SOURCE_DIR) / "cells" / "force_move.toml");
+    const auto pressed =
+        runMetier({"run", cell.url("press"), "CartesianLinearForceMoveSkill", "--json", "--set",
+                   "TargetPosition=-0.1,0,0,0,0,0", "--set", "Relative=1", "--set",
+                   "MaxForce=20,0,0", "--set", "SpeedOverride=0.05"},
+                  Errors::left_out);
+    ASSERT_EQ(pressed.status, 0) << pressed.output;
+    const auto result = nlohmann::json::parse(pressed.output);
+    EXPECT_GE(std::abs(result.at("ForcesExceeded").at("x").get<double>()), 20.0);
+    EXPECT_GT(result.at("ReactionTime").get<double>(), 0.0);
+    const auto client = connectTo(cell.url("ur5"));
+    EXPECT_EQ(openSkill(*client, "CartesianLinearMoveSkill").state().value(), State::ready);
+}
 
 }  // namespace
 }  // namespace metier::system_tests

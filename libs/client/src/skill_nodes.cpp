@@ -91,10 +91,17 @@ private:
         return result;
     }
 
+    /// The declared type, unless there is a value that is an array where none is declared, or none
+    /// where one is: some servers declare a rank that their values do not have.
     static skill::ValueType typeOf(const opcua::Value& value, const opcua::Value& data_type,
                                    const opcua::Value& rank) {
         const auto type = data_type.as<NodeId>();
         const auto declared_rank = rank.as<std::int32_t>();
+        const bool other_rank =
+            !value.isEmpty() && declared_rank && value.isArray() != (*declared_rank > kScalar);
+        if (other_rank) {
+            return opcua_skill::valueTypeOf(value);
+        }
         // "Any rank" (-2) and "scalar or one dimension" (-3) are taken as scalar.
         const auto declared = type && declared_rank ? opcua_skill::valueTypeOf(opcua::VariableShape{
                                                           *type, std::max(*declared_rank, kScalar)})

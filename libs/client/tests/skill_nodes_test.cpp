@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "served_nodes.hpp"
 
 namespace metier::client {
@@ -10,7 +12,9 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Pair;
 using ::testing::SizeIs;
+using ::testing::UnorderedElementsAre;
 
 class NodesOfASkill : public ::testing::Test {
 protected:
@@ -116,6 +120,35 @@ TEST_F(NodesOfASkill, LeaveOutFieldsOfTypesThatNoSkillHas) {
     EXPECT_EQ(speed.place, skill::Place::parameter_set);
     ASSERT_THAT(nodes->results, SizeIs(1));
     EXPECT_EQ(nodes->results.front().field.type, skill::ValueType::text);
+}
+
+TEST_F(NodesOfASkill, HaveTheRankOfTheirValuesNotADeclaredOneThatIsWrong) {
+    addMethods();
+    addState();
+    const auto folder = served_.object(skill_.node, "ParameterSet");
+    const auto add = [&](const char* name, std::int32_t rank, const opcua::Value& value) {
+        const opcua::NodeId of_double(0, 11U);
+        EXPECT_TRUE(
+            served_.nodes().addVariable({.node = {{}, folder, opcua::ids::kHasComponent, {1, name}},
+                                         .data_type = of_double,
+                                         .value_rank = rank,
+                                         .value = value}));
+    };
+    const auto joints = opcua::Value::of(std::vector{0.1, 0.2, 0.3});
+    add("Joints", -3, joints);  // scalar or one dimension
+    add("Either", -3, opcua::Value::of(0.5));
+    add("Any", -2, joints);
+    add("None", -2, {});
+    const auto nodes = read();
+    ASSERT_TRUE(nodes) << nodes.error().message;
+    std::map<std::string, skill::ValueType> types;
+    for (const auto& parameter : nodes->parameters) {
+        types[parameter.field.name] = parameter.field.type;
+    }
+    EXPECT_THAT(types, UnorderedElementsAre(Pair("Joints", skill::ValueType::numbers),
+                                            Pair("Either", skill::ValueType::number),
+                                            Pair("Any", skill::ValueType::numbers),
+                                            Pair("None", skill::ValueType::number)));
 }
 
 TEST_F(NodesOfASkill, DoNotBelievePropertiesOfOtherTypes) {

@@ -92,6 +92,28 @@ Result<void> setMotorsUnknown(AddressSpace& nodes, const Names& names, const Nod
     return {};
 }
 
+/// A variable, and the variables that are parts of it.
+Result<void> setAllUnknown(AddressSpace& nodes, const NodeId& variable) {
+    METIER_TRY(nodes.write(variable, DataValue{{}, opcua::status::kBadNoData}));
+    METIER_ASSIGN(const auto parts, nodes.browse(variable, {opcua::ids::kHasComponent}));
+    for (const auto& part : parts) {
+        METIER_TRY(setAllUnknown(nodes, part.target));
+    }
+    return {};
+}
+
+/// What is known of the load at the flange is its mass.
+Result<void> setLoadUnknown(AddressSpace& nodes, const Names& names, const NodeId& device) {
+    METIER_ASSIGN(const auto parts, within(nodes, device, {names.robotics, "FlangeLoad"}));
+    for (const auto& part : parts) {
+        const auto& name = part.browse_name.name;
+        if (name == "CenterOfMass" || name == "Inertia") {
+            METIER_TRY(setAllUnknown(nodes, part.target));
+        }
+    }
+    return {};
+}
+
 /// Programs of the controller itself: no driver asks for them.
 Result<void> setTasksUnknown(AddressSpace& nodes, const Names& names, const NodeId& controller) {
     METIER_ASSIGN(const auto tasks, within(nodes, controller, {names.robotics, "TaskControls"}));
@@ -109,6 +131,7 @@ Result<void> publishRobotValues(AddressSpace& nodes, const MotionDeviceSystem& s
     METIER_ASSIGN(const auto names, Names::of(nodes));
     METIER_TRY(setUnknown(nodes, system.motion_device, names.parameter("SpeedOverride")));
     METIER_TRY(setMotorsUnknown(nodes, names, system.motion_device));
+    METIER_TRY(setLoadUnknown(nodes, names, system.motion_device));
     METIER_TRY(setTasksUnknown(nodes, names, system.controller));
     return serveSafetyStates(nodes, names, system.system, state);
 }

@@ -232,12 +232,14 @@ Result<Exit> findRoles(const FindOptions& options, const composition::Definition
         }
         Findings found(asked, servers);
         found.addCandidates();
-        all = all && found.fitting() > 0;
+        all = all && (use.optional || found.fitting() > 0);
         if (!options.json && found.fitting() == 0) {
-            fmt::print("nothing fits\n");
+            fmt::print("nothing fits{}\n", use.optional ? "; its steps are left out" : "");
         }
-        roles.push_back(
-            {{"role", use.alias}, {"type", use.type}, {"candidates", found.candidates()}});
+        roles.push_back({{"role", use.alias},
+                         {"type", use.type},
+                         {"optional", use.optional},
+                         {"candidates", found.candidates()}});
     }
     if (options.json) {
         const nlohmann::json plan{{"skill", definition.name}, {"possible", all}, {"roles", roles}};

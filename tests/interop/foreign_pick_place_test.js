@@ -1,0 +1,68 @@
+// Pick and place with an arm of metier and a gripper of another maker, which offers no more than the
+// skill types that were published in 2019: no Hold, no results, no Check.
+'use strict';
+
+const assert = require('node:assert');
+const fs = require('node:fs');
+const os = require('node:os');
+const path = require('node:path');
+const { after, before, test } = require('node:test');
+const { runMetier, startProcess, startServer } = require('./metier_process');
+
+const kRoot = path.join(__dirname, '..', '..');
+const kGripper = path.join(__dirname, 'foreign_gripper.js');
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'foreign_pick_place_'));
+let arm;
+let gripper;
+let component;
+
+/** @param {string[]} lines of the server besides its name and kind */
+function serve(kind, lines) {
+  const file = path.join(folder, `${kind}.toml`);
+  fs.writeFileSync(file, ['name = "foreign"', '[[server]]', `name = "${kind}"`, `kind = "${kind}"`, ...lines].join('\n'));
+  return startServer(['serve', file, '--server', kind, '--port', '0']);
+}
+
+before(async () => {
+  arm = await serve('arm', [
+    'driver = { type = "simulator" }', `model = "${path.join(kRoot, 'models', 'iiwa7.toml')}"`,
+    'skills = ["CartesianPtpMoveSkill", "CartesianLinearMoveSkill"]',
+    'tool = [{ name = "jaws", frame = [0, 0, 0.25, 0, 0, 0] }]',
+  ]);
+  gripper = await startProcess(process.execPath, [kGripper]);
+  component = await serve('composition', [
+    `compositions = ["${path.join(kRoot, 'compositions', 'pick_and_place.toml')}"]`,
+    `servers = ["${arm.url}", "${gripper.url}"]`,
+  ]);
+});
+
+after(async () => {
+  for (const process of [component, gripper, arm]) {
+    await process?.stop();
+  }
+  fs.rmSync(folder, { recursive: true });
+});
+
+test('list and find know the types of the gripper', async () => {
+  const listed = await runMetier(['list', gripper.url]);
+  assert.match(listed.output, /GraspGripperSkill +Ready +no atomic start, no dead-man/);
+  const found = await runMetier(['find', path.join(kRoot, 'compositions', 'pick_and_place.toml'),
+    '--at', arm.url, '--at', gripper.url, '--json']);
+  const { possible, roles } = JSON.parse(found.output);
+  assert.strictEqual(possible, true, found.output);
+  const hold = roles.find(({ role }) => role === 'hold');
+  assert.deepStrictEqual([hold.optional, hold.candidates], [true, []]);
+});
+
+test('parts are picked and placed without a Hold', async () => {
+  const { status, output, errors } = await runMetier(['pick-place', component.url, '--parts', '2', '--json']);
+  assert.strictEqual(status, 0, errors);
+  const [tally] = JSON.parse(output);
+  assert.strictEqual(tally.placed, 2, output);
+});
+
+test('the component goes on after its gripper was halted by somebody', async () => {
+  assert.strictEqual((await runMetier(['halt', gripper.url])).status, 0);
+  const { status, errors } = await runMetier(['pick-place', component.url, '--parts', '1']);
+  assert.strictEqual(status, 0, errors);
+});
