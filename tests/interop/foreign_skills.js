@@ -67,7 +67,9 @@ class ForeignProgram {
     }
     this.duration = this.addField('ParameterSet', 'Duration', DataType.Double, 0.05);
     this.fails = this.addField('ParameterSet', 'Fails', DataType.Boolean, false);
+    this.level = this.addField('ParameterSet', 'Level', DataType.Float, 0.5);
     this.result = this.addField('FinalResultData', 'Count', DataType.UInt32, 0);
+    this.note = this.addField('FinalResultData', 'Note', DataType.LocalizedText, { text: '' });
     this.show();
   }
 
@@ -143,6 +145,7 @@ class ForeignProgram {
     }
     this.count += 1;
     this.result.setValueFromSource({ dataType: DataType.UInt32, value: this.count });
+    this.note.setValueFromSource(text(`level ${this.level.readValue().value.value}`));
     this.go('Ready', 'done');
   }
 

@@ -50,6 +50,15 @@ for (const skill of kSkills) {
   });
 }
 
+test('values of types that skills of metier do not have are sent and read', async () => {
+  const { status, output, errors } = await run('Whole', '--set', 'Duration=0', '--set', 'Level=0.25');
+  assert.strictEqual(status, 0, errors);
+  assert.match(output, /Note +"level 0.25"/);
+  const beyond = await run('Whole', '--set', 'Level=1e39');
+  assert.notStrictEqual(beyond.status, 0);
+  assert.match(beyond.errors, /Level: 1e\+39 is outside/);
+});
+
 for (const skill of ['Whole', 'WithoutEvents', 'NamesOnly', 'OwnMethods']) {
   test(`${skill} is suspended and goes on, as watch shows`, async () => {
     const watching = await startMetier(['watch', server.url, skill, '--count', '4'], /watching/);

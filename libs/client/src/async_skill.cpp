@@ -8,7 +8,7 @@
 #include "device_lock.hpp"
 #include "method_values.hpp"
 #include "metier/opcua/text.hpp"
-#include "metier/opcua_skill/values.hpp"
+#include "questions.hpp"
 #include "skill_nodes.hpp"
 #include "transition_log.hpp"
 
@@ -133,9 +133,8 @@ Answer<skill::ExecutionRecord> recordFrom(const std::vector<opcua::DataValue>& v
     const auto first = values.size() - nodes.results.size() - 1;
     record.reason_text = opcua::sanitise(values[first].value.as<std::string>().value_or(""));
     for (std::size_t i = 0; i < nodes.results.size(); ++i) {
-        const auto& field = nodes.results[i].field;
-        record.result[field.name] = opcua_skill::fromOpcua(values[first + 1 + i].value, field.type)
-                                        .value_or(skill::Value{});
+        record.result[nodes.results[i].field.name] =
+            nodes.results[i].received(values[first + 1 + i].value);
     }
     return record;
 }
@@ -249,7 +248,12 @@ Answer<> AsyncSkill::Impl::startByWrites(const skill::StartRequest& request,
             return opcua::failed(opcua::status::kBadNoMatch,
                                  fmt::format("{} has no parameter '{}'", address.name, name));
         }
-        writes.push_back({found->node, opcua_skill::toOpcua(value)});
+        auto sent = found->sent(value);
+        if (!sent) {
+            return tl::unexpected(failureOf(
+                sent.error().code, fmt::format("{}: {}", address.name, sent.error().message)));
+        }
+        writes.push_back({found->node, std::move(*sent)});
         start.names.push_back(name);
     }
     if (!nodes.lock.isThere()) {

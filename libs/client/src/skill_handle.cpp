@@ -97,6 +97,17 @@ Failure SkillHandle::Impl::wrongType(Failure failure, const FieldNode& node,
     return failure;
 }
 
+Answer<opcua::Value> SkillHandle::Impl::sent(const FieldNode& node,
+                                             const skill::Value& value) const {
+    auto converted = node.sent(value);
+    if (!converted) {
+        return tl::unexpected(
+            failureOf(converted.error().code,
+                      fmt::format("{}: {}", address.name, converted.error().message)));
+    }
+    return std::move(*converted);
+}
+
 std::string SkillHandle::Impl::reasonText() const {
     if (nodes.reason_text == opcua::NodeId{}) {
         return {};
@@ -168,8 +179,8 @@ Answer<> SkillHandle::refresh() {
 Answer<> SkillHandle::set(std::string_view name, const skill::Value& value) {
     METIER_TRY(impl_->refresh());
     METIER_ASSIGN(const auto node, impl_->parameter(name));
-    const auto written =
-        impl_->client.writeMany({{node->node, opcua_skill::toOpcua(value), {}, impl_->boot}});
+    METIER_ASSIGN(auto sent, impl_->sent(*node, value));
+    const auto written = impl_->client.writeMany({{node->node, std::move(sent), {}, impl_->boot}});
     if (!written) {
         return tl::unexpected(impl_->refused(written.error(), name));
     }
@@ -187,8 +198,9 @@ Answer<> SkillHandle::setAsync(std::string_view name, const skill::Value& value,
                                std::optional<UtcTime> meant_for,
                                std::function<void(Answer<>)> done) {
     METIER_ASSIGN(const auto node, impl_->parameter(name));
-    return impl_->client.writeAsync(
-        {node->node, opcua_skill::toOpcua(value), meant_for, impl_->boot}, std::move(done));
+    METIER_ASSIGN(auto sent, impl_->sent(*node, value));
+    return impl_->client.writeAsync({node->node, std::move(sent), meant_for, impl_->boot},
+                                    std::move(done));
 }
 
 Answer<> SkillHandle::call(Method method) {
@@ -353,9 +365,7 @@ Answer<skill::ValueMap> SkillHandle::Impl::readResults() const {
     }
     METIER_ASSIGN(const auto read, client.readMany(std::move(items)));
     for (std::size_t i = 0; i < nodes.results.size(); ++i) {
-        const auto& field = nodes.results[i].field;
-        values[field.name] =
-            opcua_skill::fromOpcua(read[i].value, field.type).value_or(skill::Value{});
+        values[nodes.results[i].field.name] = nodes.results[i].received(read[i].value);
     }
     return values;
 }

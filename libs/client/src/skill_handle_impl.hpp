@@ -52,6 +52,8 @@ struct SkillHandle::Impl {
     opcua::Failure refused(opcua::Failure failure, std::string_view what) const;
     /// Failure for a value of the wrong type, which is refused before it is sent. The skill's
     /// ReasonText must not be used for it: it would be of an older refusal.
+    /// A value for a field as it is sent. Errors: out_of_range, type_mismatch.
+    opcua::Answer<opcua::Value> sent(const FieldNode& node, const skill::Value& value) const;
     opcua::Failure wrongType(opcua::Failure failure, const FieldNode& node,
                              const skill::Value& given) const;
     std::string reasonText() const;

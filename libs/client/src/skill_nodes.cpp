@@ -1,8 +1,11 @@
 #include "skill_nodes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 
+#include "foreign_types.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/values.hpp"
 #include "questions.hpp"
@@ -31,6 +34,22 @@ const Reference* findNamed(const std::vector<Reference>& references, std::string
 }
 
 }  // namespace
+
+skill::Value FieldNode::received(const opcua::Value& value) const {
+    const auto taken = foreign_type.isNull() ? opcua_skill::fromOpcua(value, field.type)
+                                             : fromForeign(value, foreign_type);
+    return taken.value_or(skill::Value{});
+}
+
+Result<opcua::Value> FieldNode::sent(const skill::Value& value) const {
+    if (foreign_type.isNull()) {
+        return opcua_skill::toOpcua(value);
+    }
+    return toForeign(value, foreign_type).map_error([&](Error error) {
+        error.message = fmt::format("{}: {}", field.name, error.message);
+        return error;
+    });
+}
 
 const Reference* methodAmong(const std::vector<Reference>& children, skill::Method method) {
     const auto name = toString(method);
@@ -83,7 +102,11 @@ private:
         auto& field = result.field;
         const auto& value = attributes[0].value;
         field.type = typeOf(value, attributes[2].value, attributes[3].value);
-        field.default_value = opcua_skill::fromOpcua(value, field.type).value_or(skill::Value{});
+        if (field.type == skill::ValueType::null && !value.isArray()) {
+            result.foreign_type = attributes[2].value.as<NodeId>().value_or(NodeId());
+            field.type = standInFor(result.foreign_type);
+        }
+        field.default_value = result.received(value);
         if (const auto text = attributes[1].value.as<opcua::LocalizedText>()) {
             field.description = opcua::sanitise(text->text);
         }

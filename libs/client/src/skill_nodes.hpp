@@ -21,6 +21,13 @@ inline constexpr const char* kDeviceNamespace = "https://fortiss.org/UA/Device/"
 struct FieldNode {
     skill::Field field;
     opcua::NodeId node;
+    /// Data type for which the type of `field` stands, see standInFor(); null: it is that type.
+    opcua::NodeId foreign_type{};
+
+    /// A value of it as it was sent; Null if it has another type.
+    skill::Value received(const opcua::Value& value) const;
+    /// A value for it as it is sent. Errors: those of toForeign(), with the field's name.
+    Result<opcua::Value> sent(const skill::Value& value) const;
 };
 
 /// The nodes below one skill that a client uses.
