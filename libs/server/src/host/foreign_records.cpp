@@ -105,9 +105,10 @@ ForeignExecution::~ForeignExecution() {
 }
 
 void ForeignExecution::add(State from, State to, std::string text) {
-    records_->add(
-        key_,
-        {.time = timeNow(), .from = nameOf(from), .to = nameOf(to), .reason_text = std::move(text)});
+    records_->add(key_, {.time = timeNow(),
+                         .from = nameOf(from),
+                         .to = nameOf(to),
+                         .reason_text = std::move(text)});
 }
 
 void ForeignExecution::end(const UsedSkillEnd& end) {
