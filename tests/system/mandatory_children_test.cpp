@@ -75,6 +75,30 @@ TEST(MandatoryChildren, ThatAreMissingAreNamedWithTheirPlaces) {
     EXPECT_THAT(missing, Contains(AllOf(HasSubstr("/Axis_2"), EndsWith("lacks ActualPosition"))));
 }
 
+// Of the load at its flange an arm knows the mass.
+TEST(OptionalChildren, HaveNoValueThatNobodyKnows) {
+    const ServerProcess arm("iiwa");
+    const auto client = connectTo(arm.url());
+    const auto iiwa = client->namespaceIndex("https://fortiss.org/UA/iiwa/").value();
+    const auto robotics = client->namespaceIndex("http://opcfoundation.org/UA/Robotics/").value();
+    const auto status = [&](const std::vector<opcua::QualifiedName>& below) {
+        std::vector<opcua::QualifiedName> path{{iiwa, "IiwaSystem"},
+                                               {robotics, "MotionDevices"},
+                                               {iiwa, "Iiwa"},
+                                               {robotics, "FlangeLoad"}};
+        path.insert(path.end(), below.begin(), below.end());
+        const auto node = client->translate(deviceSet(*client), path);
+        EXPECT_TRUE(node) << below.back().name;
+        const auto value = client->read(node.value_or(NodeId()));
+        return value ? "Good" : value.error().status.name();
+    };
+    EXPECT_EQ(status({{robotics, "Mass"}}), "Good");
+    EXPECT_EQ(status({{robotics, "CenterOfMass"}}), "BadNoData");
+    EXPECT_EQ(status({{robotics, "CenterOfMass"}, {0, "CartesianCoordinates"}, {0, "X"}}),
+              "BadNoData");
+    EXPECT_EQ(status({{robotics, "Inertia"}}), "BadNoData");
+}
+
 TEST(MandatoryChildren, AreThereInEveryInstanceOfTheDemosServers) {
     const RunningCell cell(demoCell());
     for (const auto& [name, url] : cell.urls()) {

@@ -115,10 +115,15 @@ TEST_F(FoundSkills, HaveTheirMethodsInAnyNamespace) {
     const auto skill = served_.program(kTop, "Skill");
     const auto start = served_.method(skill, "Start");
     served_.method(skill, "Suspend");
-    const auto suspend =
-        served_.nodes()
-            .addMethod({{{}, skill, opcua::ids::kHasComponent, {0, "Suspend"}}, {}, {}, {}})
-            .value();
+    const auto suspend = served_.nodes()
+                             .addMethod({{opcua::NodeId(1, "PublishedSuspend"),
+                                          skill,
+                                          opcua::ids::kHasComponent,
+                                          {0, "Suspend"}},
+                                         {},
+                                         {},
+                                         {}})
+                             .value();
     served_.object(skill, "Halt");
     const auto found = findSkill(served_.client(), "Skill").value();
     EXPECT_EQ(findMethod(served_.client(), found, skill::Method::start).value(), start);

@@ -86,10 +86,6 @@ TEST_F(RobotValues, InventNothing) {
                                                 {robotics_, "MotorTemperature"}}),
                   "BadNoData");
     }
-    for (const auto* name : {"CenterOfMass", "Inertia"}) {
-        EXPECT_EQ(read(system().motion_device, {{robotics_, "FlangeLoad"}, {robotics_, name}}),
-                  "BadNoData");
-    }
     for (const auto* name : {"TaskProgramName", "TaskProgramLoaded"}) {
         EXPECT_EQ(read(system().controller, {{robotics_, "TaskControls"},
                                              {own_, "SkillControl"},
