@@ -39,14 +39,15 @@ TEST(TimeHistogram, HasBoundsThatGrow) {
 TEST(TimeHistogram, LosesNothingOfSeveralThreads) {
     constexpr int kEach = 20'000;
     TimeHistogram histogram;
+    const auto add = [&] {
+        for (int n = 0; n < kEach; ++n) {
+            histogram.add(0.5);
+        }
+    };
     {
         std::vector<std::jthread> threads;
         for (int i = 0; i < 4; ++i) {
-            threads.emplace_back([&] {
-                for (int n = 0; n < kEach; ++n) {
-                    histogram.add(0.5);
-                }
-            });
+            threads.emplace_back(add);
         }
     }
     const auto read = histogram.read();

@@ -9,7 +9,6 @@ namespace {
 using opcua::NodeId;
 using skill::Value;
 using skill::ValueType;
-using ::testing::HasSubstr;
 
 constexpr std::uint32_t kByte = 3;
 constexpr std::uint32_t kInt16 = 4;

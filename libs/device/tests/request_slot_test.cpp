@@ -105,15 +105,18 @@ TEST(RequestSlot, MayBeUsedByManyThreads) {
     RequestSlot<std::string, std::string> slot;
     std::atomic<bool> done{false};
     std::atomic<int> reported{0};
+    const auto serve = [&] {
+        if (const auto* request = slot.take()) {
+            slot.close({Errc::connection_lost, "no gripper"});
+            slot.open();
+            static_cast<void>(slot.takeStop());
+            slot.end(*request + " done");
+        }
+    };
     {
         const std::jthread server([&] {
             while (!done.load()) {
-                if (const auto* request = slot.take()) {
-                    slot.close({Errc::connection_lost, "no gripper"});
-                    slot.open();
-                    static_cast<void>(slot.takeStop());
-                    slot.end(*request + " done");
-                }
+                serve();
             }
         });
         const std::jthread notifier([&] {

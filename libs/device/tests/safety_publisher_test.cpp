@@ -81,23 +81,20 @@ TEST(SafetyPublisher, MayBeUsedByManyThreads) {
     std::atomic<int> told{0};
     const auto lasting = publisher.onChange([&](const Safety&) { ++told; });
     std::atomic<bool> done{false};
+    const auto come_and_go = [&] {
+        while (!done.load()) {
+            static_cast<void>(publisher.safety());
+            const auto passing = publisher.onChange([](const Safety&) {});
+        }
+    };
     {
         std::jthread notifier([&] {
             while (!done.load()) {
                 publisher.dispatch();
             }
         });
-        std::jthread client([&] {
-            while (!done.load()) {
-                static_cast<void>(publisher.safety());
-                const auto passing = publisher.onChange([](const Safety&) {});
-            }
-        });
-        std::jthread second([&] {
-            while (!done.load()) {
-                const auto passing = publisher.onChange([](const Safety&) {});
-            }
-        });
+        std::jthread client(come_and_go);
+        std::jthread second(come_and_go);
         std::jthread driver([&] {
             for (int i = 0; i < 2'000; ++i) {
                 publisher.set({SafetyState::fault, "fast stop", false});

@@ -95,9 +95,21 @@ TEST_P(KinematicsOf, InverseFindsAPositionInsideTheLimitsForEveryReachablePose) 
     }
 }
 
+/// Time in which an axis gets from `reference` to an angle, or to the same angle some turns away,
+/// whichever is nearest within its limits [s]; 1e9 if none is.
+double leastTurnTime(const JointLimits& limits, double angle, double reference) {
+    double least = 1e9;
+    for (int turn = -2; turn <= 2; ++turn) {
+        const double turned = angle + turn * 2 * std::numbers::pi;
+        if (turned >= limits.lower && turned <= limits.upper) {
+            least = std::min(least, std::abs(turned - reference) / limits.velocity);
+        }
+    }
+    return least;
+}
+
 TEST_P(KinematicsOf, InverseGivesTheNearestOfAllSolutionsAndTurns) {
     std::mt19937_64 random(5);
-    constexpr double kTwoPi = 2 * std::numbers::pi;
     for (int i = 0; i < scaled(10000); ++i) {
         const motion::Pose pose = kinematics_.forward(randomPosition(model_, random));
         const JointVector reference = randomPosition(model_, random);
@@ -105,16 +117,8 @@ TEST_P(KinematicsOf, InverseGivesTheNearestOfAllSolutionsAndTurns) {
         for (const JointVector& solution : kinematics_.allSolutions(pose, reference)) {
             double cost = 0;
             for (std::size_t axis = 0; axis < solution.size(); ++axis) {
-                double axis_cost = 1e9;
-                for (int turn = -2; turn <= 2; ++turn) {
-                    const double angle = solution[axis] + turn * kTwoPi;
-                    const JointLimits& limits = model_.limits(axis);
-                    if (angle >= limits.lower && angle <= limits.upper) {
-                        axis_cost = std::min(axis_cost,
-                                             std::abs(angle - reference[axis]) / limits.velocity);
-                    }
-                }
-                cost = std::max(cost, axis_cost);
+                cost = std::max(
+                    cost, leastTurnTime(model_.limits(axis), solution[axis], reference[axis]));
             }
             least = std::min(least, cost);
         }

@@ -225,15 +225,16 @@ TEST(ServerThread, RunsPostedWorkOfManyThreads) {
     int count = 0;  // the server's thread only
     constexpr int kThreads = 8;
     constexpr int kEach = 1000;
+    const auto post = [&] {
+        for (int n = 0; n < kEach; ++n) {
+            server->post([&] { ++count; });
+        }
+        EXPECT_TRUE(server->call([&] { ++count; }));
+    };
     {
         std::vector<std::jthread> threads;
         for (int i = 0; i < kThreads; ++i) {
-            threads.emplace_back([&] {
-                for (int n = 0; n < kEach; ++n) {
-                    server->post([&] { ++count; });
-                }
-                EXPECT_TRUE(server->call([&] { ++count; }));
-            });
+            threads.emplace_back(post);
         }
     }
     EXPECT_EQ(server->call([&] { return count; }), kThreads * (kEach + 1));

@@ -10,7 +10,6 @@ namespace {
 
 using composition::UsedSkill;
 using composition::UsedSkillEnd;
-using composition::UsedSkillListener;
 using skill::State;
 
 class RecordedUsedSkill final : public composition::WrappedUsedSkill {
