@@ -4,12 +4,12 @@
 'use strict';
 
 const assert = require('node:assert');
+const { execFileSync } = require('node:child_process');
 const fs = require('node:fs');
 const os = require('node:os');
 const path = require('node:path');
 const { after, test } = require('node:test');
-const { execFileSync } = require('node:child_process');
-const { runMetier, startServer } = require('./metier_process');
+const { runMetier, serve } = require('./metier_process');
 
 const { AddressSpace, coerceLocalizedText } = require('node-opcua');
 const { generateAddressSpace } = require('node-opcua-address-space/nodeJS');
@@ -110,18 +110,10 @@ test('exported skill types are taken by the compiler of open62541', { skip: !kTo
   });
 
 test('find asks for the properties that a server declares for a type', async () => {
-  const cell = path.join(kDirectory, 'cell.toml');
-  fs.writeFileSync(cell, `
-name = "careful"
-[[server]]
-name = "arm"
-kind = "arm"
-driver = { type = "simulator" }
-model = "${path.join(__dirname, '..', '..', 'models', 'ur5.toml')}"
-skills = ["JointPtpMoveSkill", "CartesianPtpMoveSkill"]
-types = ["${kTypes}"]
-`);
-  const arm = await startServer(['serve', cell, '--server', 'arm', '--port', '0']);
+  const arm = await serve(kDirectory, 'arm', [
+    'driver = { type = "simulator" }', `model = "${path.join(__dirname, '..', '..', 'models', 'ur5.toml')}"`,
+    'skills = ["JointPtpMoveSkill", "CartesianPtpMoveSkill"]', `types = ["${kTypes}"]`,
+  ]);
   try {
     const find = (type, wish) => runMetier(['find', type, '--at', arm.url, '--property', wish]);
     const accurate = await find('JointPtpMoveSkillType', 'Accuracy<=0.001');

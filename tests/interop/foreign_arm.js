@@ -9,6 +9,7 @@ const {
   nodesets, standardUnits,
 } = require('node-opcua');
 const { freePort } = require('./free_port');
+const { kMethodsWithoutSuspend: kMethods, kStates } = require('./program_states');
 const { announce, run } = require('./server_program');
 
 // As the server lists them, and as its arrays have them: not in the order of the arm.
@@ -17,16 +18,6 @@ const kAxes = Object.keys(kStart);
 const kLargestSpeed = 3.2;  // rad/s
 const kTickMs = 4;
 
-const kStates = {
-  Halted: { id: 2406, number: 11 },
-  Ready: { id: 2400, number: 12 },
-  Running: { id: 2402, number: 13 },
-};
-const kMethods = {
-  Start: { from: ['Ready'], to: 'Running' },
-  Halt: { from: ['Ready', 'Running'], to: 'Halted' },
-  Reset: { from: ['Halted'], to: 'Ready' },
-};
 
 const text = (value) => ({ dataType: DataType.LocalizedText, value: { text: value } });
 const number = (value) => new Variant({ dataType: DataType.Double, value });

@@ -8,7 +8,7 @@ const os = require('node:os');
 const path = require('node:path');
 const { after, afterEach, beforeEach, test } = require('node:test');
 const { AttributeIds, OPCUAClient } = require('node-opcua');
-const { runMetier, startProcess, startServer } = require('./metier_process');
+const { runMetier, serve, startProcess, writeCell } = require('./metier_process');
 
 const kProgram = path.join(__dirname, 'foreign_arm.js');
 const kModel = path.join(__dirname, '..', '..', 'models', 'ur5.toml');
@@ -18,6 +18,8 @@ const kAway = [1.2, -1.0, 1.4, -1.8, -1.2, 0.9];
 // A pose of the flange that both arms can reach, in their base frames.
 const kPlace = '0.4,-0.3,0.5,3.14,0,1';
 const kMoveSeconds = 4;
+// Longest one of the two [s]: the first set-point is one cycle into the move.
+const kCycle = 0.01;
 // One arm of the two has a network, and the machine may be busy.
 const kLargestSkew = 0.5;
 const kObjectsFolder = 'ns=0;i=85';
@@ -34,23 +36,9 @@ let component;
 
 after(() => fs.rmSync(folder, { recursive: true }));
 
-/** A cell file with one server. @param {string[]} lines of the server besides its name and kind */
-function cellWith(kind, lines) {
-  const file = path.join(folder, `cell${fs.readdirSync(folder).length}.toml`);
-  fs.writeFileSync(file, `
-name = "foreign"
-[[server]]
-name = "${kind}"
-kind = "${kind}"
-${lines.join('\n')}
-`);
-  return file;
-}
-
-const serve = (kind, lines) => startServer(['serve', cellWith(kind, lines), '--server', kind, '--port', '0']);
 /** @param {string[]} lines of a move component besides its robot */
-const cellOf = (lines) => cellWith('move', [`robot = "${arm.url}"`, 'stall_limit = 2.0', ...lines]);
-const startComponent = (lines) => startServer(['serve', cellOf(lines), '--server', 'move', '--port', '0']);
+const linesOf = (lines) => [`robot = "${arm.url}"`, 'stall_limit = 2.0', ...lines];
+const startComponent = (lines) => serve(folder, 'move', linesOf(lines));
 
 async function startBoth() {
   arm = await startProcess(process.execPath, [kProgram]);
@@ -231,12 +219,12 @@ test('the death of the server halts the move within the told time', async () => 
 
 /** Two arms that move together: ours, and the one of the other maker over its move component. */
 async function withBoth(work) {
-  const ours = await serve('arm', [
+  const ours = await serve(folder, 'arm', [
     'driver = { type = "simulator" }', `model = "${kModel}"`,
     'skills = ["CartesianPtpMoveSkill", "JointPtpMoveSkill"]',
   ]);
   try {
-    const both = await serve('synchronized', [`servers = ["${ours.url}", "${component.url}"]`]);
+    const both = await serve(folder, 'synchronized', [`servers = ["${ours.url}", "${component.url}"]`]);
     try {
       await work(both, ours);
     } finally {
@@ -255,7 +243,7 @@ test('moves together with an arm of metier: they begin and arrive as one', async
     const { status, output, errors } = await moveBoth(both.url);
     assert.strictEqual(status, 0, errors);
     const results = JSON.parse(output);
-    assert.ok(Math.abs(results.Duration - kMoveSeconds) < kLargestSkew, output);
+    assert.ok(results.Duration > kMoveSeconds - kCycle, output);
     assert.ok(results.SkewAtStart < kLargestSkew && results.SkewAtEnd < kLargestSkew, output);
   });
 });
@@ -278,7 +266,7 @@ for (const [lines, reason] of [
   [[`model = "${kModel}"`, `axes = ["base", "shoulder"]`], /is no order of the joints/],
 ]) {
   test(`is refused: ${reason}`, async () => {
-    const refused = await runMetier(['serve', cellOf(lines), '--server', 'move', '--port', '0']);
+    const refused = await runMetier(['serve', writeCell(folder, 'move', linesOf(lines)), '--server', 'move', '--port', '0']);
     assert.notStrictEqual(refused.status, 0);
     assert.match(refused.errors, reason);
   });

@@ -7,22 +7,13 @@ console.log = console.error;  // what node-opcua says; the standard output is fo
 const path = require('node:path');
 const { DataType, OPCUAServer, StatusCodes, coerceNodeId, nodesets } = require('node-opcua');
 const { freePort } = require('./free_port');
+const { kMethodsWithoutSuspend: kMethods, kStates } = require('./program_states');
 const { announce, run } = require('./server_program');
 
 const kDevice = path.join(__dirname, '..', '..', 'nodesets', 'device', 'NodeSet2.xml');
 // ObjectTypes of https://fortiss.org/UA/Device/.
 const kTypes = { GraspGripperSkill: 15168, ReleaseGripperSkill: 15473 };
 const kMoveMs = 100;
-const kStates = {
-  Halted: { id: 2406, number: 11 },
-  Ready: { id: 2400, number: 12 },
-  Running: { id: 2402, number: 13 },
-};
-const kMethods = {
-  Start: { from: ['Ready'], to: 'Running' },
-  Halt: { from: ['Ready', 'Running'], to: 'Halted' },
-  Reset: { from: ['Halted'], to: 'Ready' },
-};
 
 /** A skill that is Running for a moment. Suspend and Resume are there and refuse. */
 class Skill {

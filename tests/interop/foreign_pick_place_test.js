@@ -7,7 +7,7 @@ const fs = require('node:fs');
 const os = require('node:os');
 const path = require('node:path');
 const { after, before, test } = require('node:test');
-const { runMetier, startProcess, startServer } = require('./metier_process');
+const { runMetier, serve, startProcess } = require('./metier_process');
 
 const kRoot = path.join(__dirname, '..', '..');
 const kGripper = path.join(__dirname, 'foreign_gripper.js');
@@ -16,21 +16,14 @@ let arm;
 let gripper;
 let component;
 
-/** @param {string[]} lines of the server besides its name and kind */
-function serve(kind, lines) {
-  const file = path.join(folder, `${kind}.toml`);
-  fs.writeFileSync(file, ['name = "foreign"', '[[server]]', `name = "${kind}"`, `kind = "${kind}"`, ...lines].join('\n'));
-  return startServer(['serve', file, '--server', kind, '--port', '0']);
-}
-
 before(async () => {
-  arm = await serve('arm', [
+  arm = await serve(folder, 'arm', [
     'driver = { type = "simulator" }', `model = "${path.join(kRoot, 'models', 'iiwa7.toml')}"`,
     'skills = ["CartesianPtpMoveSkill", "CartesianLinearMoveSkill"]',
     'tool = [{ name = "jaws", frame = [0, 0, 0.25, 0, 0, 0] }]',
   ]);
   gripper = await startProcess(process.execPath, [kGripper]);
-  component = await serve('composition', [
+  component = await serve(folder, 'composition', [
     `compositions = ["${path.join(kRoot, 'compositions', 'pick_and_place.toml')}"]`,
     `servers = ["${arm.url}", "${gripper.url}"]`,
   ]);

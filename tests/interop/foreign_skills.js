@@ -7,14 +7,9 @@ const {
   DataType, OPCUAServer, StatusCodes, coerceNodeId, coerceQualifiedName,
 } = require('node-opcua');
 const { freePort } = require('./free_port');
+const { kStates } = require('./program_states');
 const { announce, run } = require('./server_program');
 
-const kStates = {
-  Halted: { id: 2406, number: 11 },
-  Ready: { id: 2400, number: 12 },
-  Running: { id: 2402, number: 13 },
-  Suspended: { id: 2404, number: 14 },
-};
 const kTransitions = {
   HaltedToReady: { id: 2408, number: 1 },
   ReadyToRunning: { id: 2410, number: 2 },

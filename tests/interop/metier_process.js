@@ -74,6 +74,25 @@ function startServer(args, security = kLab) {
 }
 
 /**
+ * Writes a cell file with one server, which has the name of its kind.
+ *
+ * @param {string} folder
+ * @param {string} kind
+ * @param {string[]} lines of the server besides its name and kind
+ * @returns {string} the file
+ */
+function writeCell(folder, kind, lines) {
+  const file = path.join(folder, `cell${fs.readdirSync(folder).length}.toml`);
+  fs.writeFileSync(file, ['name = "cell"', '[[server]]', `name = "${kind}"`, `kind = "${kind}"`, ...lines, ''].join('\n'));
+  return file;
+}
+
+/** Starts the server of a cell file that it writes, as writeCell(). @returns {Promise<Running>} */
+function serve(folder, kind, lines) {
+  return startServer(['serve', writeCell(folder, kind, lines), '--server', kind, '--port', '0']);
+}
+
+/**
  * @param {string[]} args of a metier command that ends by itself
  * @param {string[]} security options of metier on security
  * @returns {Promise<{status: number, output: string, errors: string}>} its exit status and what it
@@ -159,4 +178,4 @@ function startCell(cell) {
   });
 }
 
-module.exports = { runMetier, startCell, startMetier, startProcess, startServer };
+module.exports = { runMetier, serve, startCell, startMetier, startProcess, startServer, writeCell };

@@ -75,7 +75,7 @@ TEST(MandatoryChildren, ThatAreMissingAreNamedWithTheirPlaces) {
     EXPECT_THAT(missing, Contains(AllOf(HasSubstr("/Axis_2"), EndsWith("lacks ActualPosition"))));
 }
 
-// Of the load at its flange an arm knows the mass.
+// An arm knows the mass of the load at its flange, and nothing else of it.
 TEST(OptionalChildren, HaveNoValueThatNobodyKnows) {
     const ServerProcess arm("iiwa");
     const auto client = connectTo(arm.url());

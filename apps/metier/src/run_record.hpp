@@ -28,7 +28,7 @@ public:
     /// Adds a transition of the skill, if it is one of Suspend or Resume.
     void add(const skill::TransitionEvent& event);
 
-    /// What is known of a run that is over, besides its outcome.
+    /// Facts about a run that is over, besides its outcome.
     struct Over {
         skill::State state;  ///< of the skill now
         bool halted_here;    ///< whether this command wanted a Halt

@@ -115,7 +115,8 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
 Exit runSkill(const link::StopSignal& signal, OpenSkill& open, const skill::ValueMap& values,
               const SkillRun& run) {
     auto& skill = open.skill;
-    // Only who records a run gives it a name: runWith() asks what became of a name that is given.
+    // An id of ours only where the run is recorded here: after a Start with a given id, runWith()
+    // asks the server for the record of that id.
     auto id = skill.knowsExecutions() ? std::string() : randomHex(kIdDigits);
     auto record = RunRecord::begin(run.records, open, {.execution_id = id, .parameters = values});
     if (!record) {

@@ -102,7 +102,7 @@ Result<void> setAllUnknown(AddressSpace& nodes, const NodeId& variable) {
     return {};
 }
 
-/// What is known of the load at the flange is its mass.
+/// Centre of mass and inertia of the load at the flange: no driver knows them, only the mass.
 Result<void> setLoadUnknown(AddressSpace& nodes, const Names& names, const NodeId& device) {
     METIER_ASSIGN(const auto parts, within(nodes, device, {names.robotics, "FlangeLoad"}));
     for (const auto& part : parts) {

@@ -14,7 +14,7 @@ using ::testing::IsEmpty;
 using ::testing::Pair;
 using ::testing::SizeIs;
 
-/// What an SRDF file says, and the errors in it.
+/// An SRDF file that was read, with its errors.
 struct ReadSemantics {
     explicit ReadSemantics(const std::string& content)
         : file(XmlFile::parse(content, "arm.srdf").value()), semantics(Semantics::read(file)) {}

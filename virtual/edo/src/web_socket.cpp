@@ -8,7 +8,7 @@
 namespace metier::virtual_edo {
 namespace {
 
-enum FrameKind : std::uint8_t {
+enum WebSocketOpcode : std::uint8_t {
     continuation = 0x0,
     text = 0x1,
     binary = 0x2,
@@ -78,7 +78,8 @@ Header headerOf(std::string_view bytes) {
 bool isLawful(std::uint8_t first, std::uint8_t second) {
     const std::uint8_t opcode = first & 0x0FU;
     const bool is_control = (opcode & 0x8U) != 0;
-    const bool known = opcode <= FrameKind::binary || (is_control && opcode <= FrameKind::pong);
+    const bool known =
+        opcode <= WebSocketOpcode::binary || (is_control && opcode <= WebSocketOpcode::pong);
     const bool masked = (second & 0x80U) != 0;
     const bool reserved = (first & 0x70U) != 0;
     const bool whole = (first & 0x80U) != 0 && (second & 0x7FU) <= kLongestControl;
@@ -88,7 +89,7 @@ bool isLawful(std::uint8_t first, std::uint8_t second) {
 }  // namespace
 
 std::string WebSocket::textFrame(std::string_view message) {
-    return frame(FrameKind::text, message);
+    return frame(WebSocketOpcode::text, message);
 }
 
 WebSocket::Received WebSocket::receive(std::span<const std::byte> bytes) {
@@ -157,11 +158,11 @@ bool WebSocket::takeFrame(Received& received) {
 }
 
 void WebSocket::onControl(const Frame& taken, Received& received) {
-    if (taken.opcode == FrameKind::ping) {
-        received.answer += frame(FrameKind::pong, taken.payload);
+    if (taken.opcode == WebSocketOpcode::ping) {
+        received.answer += frame(WebSocketOpcode::pong, taken.payload);
         return;
     }
-    if (taken.opcode == FrameKind::pong) {
+    if (taken.opcode == WebSocketOpcode::pong) {
         return;
     }
     const std::string_view payload = taken.payload;
@@ -171,13 +172,13 @@ void WebSocket::onControl(const Frame& taken, Received& received) {
         fail(kProtocolError, received);
         return;
     }
-    received.answer += frame(FrameKind::close, payload.substr(0, 2));
+    received.answer += frame(WebSocketOpcode::close, payload.substr(0, 2));
     state_ = State::closed;
     received.close = true;
 }
 
 void WebSocket::onData(const Frame& taken, Received& received) {
-    if ((taken.opcode == FrameKind::continuation) != fragmented_) {
+    if ((taken.opcode == WebSocketOpcode::continuation) != fragmented_) {
         fail(kProtocolError, received);
         return;
     }
@@ -195,7 +196,7 @@ void WebSocket::onData(const Frame& taken, Received& received) {
 
 void WebSocket::fail(std::uint16_t status, Received& received) {
     const std::array code{static_cast<char>(status >> 8), static_cast<char>(status & 0xFFU)};
-    received.answer += frame(FrameKind::close, {code.data(), code.size()});
+    received.answer += frame(WebSocketOpcode::close, {code.data(), code.size()});
     received.close = true;
     state_ = State::closed;
     incoming_.clear();

@@ -158,7 +158,7 @@ void StepsCheck::eitherBranch(Visit visit, const Then& then) {
     });
 }
 
-/// What two branches lead to of which the run takes one.
+/// The common finding of two branches: the run will take one of them.
 StepsCheck::Finding StepsCheck::oneOf(Finding one, Finding other) {
     if (!one.refusal && !other.refusal) {
         return {.after = either(one.after, other.after),

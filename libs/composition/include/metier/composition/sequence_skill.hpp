@@ -46,9 +46,9 @@ using BoundSkills = std::map<std::string, BoundSkill, std::less<>>;
 /// Threading: the owner's thread, which all used skills report to.
 class SequenceSkill final : public skill::Skill {
 public:
-    /// What a composed skill is run by.
+    /// Surroundings of a composed skill: its thread, its clock and its name.
     struct Host {
-        /// Of the owner's thread; not null.
+        /// Executor of the owner's thread; not null.
         std::shared_ptr<skill::Executor> executor;
         /// Must outlive the skill.
         const Clock& clock;
