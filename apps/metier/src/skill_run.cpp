@@ -134,7 +134,12 @@ Exit runSkill(const link::StopSignal& signal, OpenSkill& open, const skill::Valu
     }
     if (*record != nullptr) {
         skill.onTransition({});
-        (*record)->end(result, {skill.state().value_or(skill::State::running), signal.came()});
+        // A server that did not answer is not asked again.
+        const bool answers =
+            result || result.error().delivery == opcua::Failure::Delivery::answered;
+        const auto state =
+            answers ? skill.state().value_or(skill::State::running) : skill::State::running;
+        (*record)->end(result, {state, signal.came()});
     }
     return exit;
 }
