@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
+
 #include "client_bare_server.hpp"
 
 namespace metier::opcua::testing {
@@ -179,6 +181,31 @@ TEST_F(ClientTest, WritesAndCallsWithoutWaitingInOrder) {
     ASSERT_TRUE(heard.wait([&] { return outcomes.size() == 4; }));
     EXPECT_THAT(outcomes, ElementsAre("written", "BadTypeMismatch", "written", "BadInvalidState"));
     EXPECT_EQ(client->read(kNumber)->as<double>(), 3.0);
+}
+
+TEST_F(ClientTest, RunsWorkAfterADelay) {
+    Condition heard;
+    std::vector<std::string> outcomes;
+    const auto note = [&](const std::string& text) {
+        return [&heard, &outcomes, text] { heard.notify([&] { outcomes.push_back(text); }); };
+    };
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_TRUE(client->runAfter(300ms, note("later")));
+    ASSERT_TRUE(client->runAfter(-1s, note("now")));
+    ASSERT_TRUE(heard.wait([&] { return outcomes.size() == 2; }));
+    EXPECT_THAT(outcomes, ElementsAre("now", "later"));
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, 300ms);
+}
+
+TEST_F(ClientTest, RunsDelayedWorkAtOnceWhenItIsClosed) {
+    std::atomic<int> ran = 0;
+    ASSERT_TRUE(client->runAfter(1h, [&] { ++ran; }));
+    ASSERT_TRUE(client->close());
+    EXPECT_EQ(ran, 1);
+    const auto refused = client->runAfter(0ms, [&] { ++ran; });
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::connection_lost);
+    EXPECT_EQ(ran, 1);
 }
 
 TEST(ClientConnect, SaysThatNobodyIsThere) {

@@ -158,6 +158,10 @@ void Client::onConnectionLost(std::function<void(const Failure&)> callback) {
     core_->onConnectionLost(std::move(callback));
 }
 
+Answer<> Client::runAfter(std::chrono::nanoseconds delay, std::function<void()> work) {
+    return core_->runAfter(delay, std::move(work));
+}
+
 Answer<Value> Client::read(const NodeId& node, AttributeId attribute, Timeout timeout) {
     METIER_ASSIGN(auto values, readMany({{node, attribute}}, timeout));
     auto& value = values.front();
@@ -205,7 +209,7 @@ Answer<std::vector<Answer<NodeId>>> Client::translateMany(std::vector<RelativePa
 }
 
 Answer<std::vector<std::string>> Client::namespaceArray(Timeout timeout) {
-    METIER_ASSIGN(const auto value, read(kNamespaceArray, AttributeId::value, timeout));
+    METIER_ASSIGN(const auto value, read(ids::kNamespaceArray, AttributeId::value, timeout));
     auto uris = value.as<std::vector<std::string>>();
     if (!uris) {
         return tl::unexpected(Failure{uris.error(), status::kBadTypeMismatch, {}});

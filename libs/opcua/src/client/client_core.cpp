@@ -170,6 +170,12 @@ void ClientCore::setState(Client::State state) {
     state_changed_.notify_all();
 }
 
+Answer<> ClientCore::runAfter(std::chrono::nanoseconds delay, std::function<void()> work) {
+    return post([this, due = steady_clock::now() + delay, work = std::move(work)]() mutable {
+        delayed_.emplace(due, std::move(work));
+    });
+}
+
 void ClientCore::onConnectionLost(std::function<void(const Failure&)> callback) {
     const auto posted = post([this, callback = std::move(callback)]() mutable {
         if (phase_ == Phase::over) {
@@ -244,13 +250,25 @@ void ClientCore::iterate(milliseconds longest) {
         lose(status::kBadInternalError);
     }
     calls_.expire(steady_clock::now());
+    runDelayed(steady_clock::now());
     attemptIfDue();
     sayEverything();
 }
 
 SteadyTime ClientCore::nextDue() const {
-    const auto call = calls_.nextDeadline().value_or(SteadyTime::max());
-    return phase_ == Phase::waiting && !ending_ ? std::min(call, schedule_->next()) : call;
+    auto next = calls_.nextDeadline().value_or(SteadyTime::max());
+    if (!delayed_.empty()) {
+        next = std::min(next, delayed_.begin()->first);
+    }
+    return phase_ == Phase::waiting && !ending_ ? std::min(next, schedule_->next()) : next;
+}
+
+/// Runs what is due until then, between two iterations of the loop.
+void ClientCore::runDelayed(SteadyTime until) {
+    const auto end = delayed_.upper_bound(until);
+    for (auto due = delayed_.begin(); due != end; due = delayed_.erase(due)) {
+        later(std::move(due->second));
+    }
 }
 
 void ClientCore::sayEverything() {
@@ -267,6 +285,7 @@ void ClientCore::end() {
     phase_ = Phase::over;
     outage_ = lostFailure("the client is closed", status::kBadConnectionClosed);
     calls_.failAll(status::kBadConnectionClosed);
+    runDelayed(SteadyTime::max());
     subscriptions_.end(status::kBadConnectionClosed);
     sayEverything();
     UA_Client_disconnectAsync(client_.get());

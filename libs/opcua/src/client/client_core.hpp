@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -20,8 +21,6 @@
 #include "metier/opcua/client.hpp"
 
 namespace metier::opcua {
-
-inline const NodeId kNamespaceArray{0, 2255U};
 
 /// Effect of a request on the server.
 enum class Effect { asks, commands };
@@ -77,6 +76,8 @@ public:
     /// As post(), for work that sends. Refused without a connection; what is posted to one
     /// connection is not sent by the next.
     Answer<> request(std::function<void()> work);
+    /// As Client::runAfter().
+    Answer<> runAfter(std::chrono::nanoseconds delay, std::function<void()> work);
     void onConnectionLost(std::function<void(const Failure&)> callback);
     void onConnectionChange(std::function<void(const ConnectionChange&)> callback);
 
@@ -108,6 +109,7 @@ private:
     SteadyTime nextDue() const;
     void runRequest(std::uint64_t connection, const std::function<void()>& work);
     void sayEverything();
+    void runDelayed(SteadyTime until);
     void end();
     UA_SecureChannelState channelState() const;
     void sendMessage(const Message& message, SteadyTime deadline, ClientCalls::Finish finish);
@@ -158,6 +160,7 @@ private:
     ClientCalls calls_;
     ClientSubscriptions subscriptions_;
     std::vector<std::function<void()>> call_outs_;
+    std::multimap<SteadyTime, std::function<void()>> delayed_;  // by the time at which it is due
     std::unique_ptr<UA_Client, DeleteClient> client_;
     ClientCalls::Call* connecting_ = nullptr;  // none: settled
     UA_SecureChannelState channel_ = UA_SECURECHANNELSTATE_CLOSED;

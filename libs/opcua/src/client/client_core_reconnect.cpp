@@ -112,7 +112,7 @@ void ClientCore::identify() {
     later([this] {
         std::array<UA_ReadValueId, 2> items{};
         items[0].nodeId = viewOf(kStartTime);
-        items[1].nodeId = viewOf(kNamespaceArray);
+        items[1].nodeId = viewOf(ids::kNamespaceArray);
         UA_ReadRequest request{};
         request.timestampsToReturn = UA_TIMESTAMPSTORETURN_NEITHER;
         request.nodesToReadSize = items.size();

@@ -254,7 +254,8 @@ private:
 /// Threading: any thread may call anything but the destructor, and many may at once. Waiting calls
 /// block their thread. One thread of its own serves the connection and runs all callbacks, which
 /// must neither wait nor throw. Callbacks may use the functions of this client that end in Async,
-/// state() and the destructor of a Subscription; waiting calls and close() are refused there.
+/// runAfter(), state() and the destructor of a Subscription; waiting calls and close() are refused
+/// there.
 class Client {
 public:
     /// Connects and activates a session; waits, at most about ClientOptions::connect_timeout.
@@ -300,6 +301,12 @@ public:
     /// connection is lost already. Not called after close(). A later callback replaces an earlier
     /// one.
     void onConnectionLost(std::function<void(const Failure&)> callback);
+
+    /// Runs `work` once on the client's thread after a delay, or when the client is closed before
+    /// that. `work` must not wait. Callbacks may use it.
+    /// \param delay negative: none
+    /// Errors: connection_lost after close(), returned; then `work` is not run.
+    Answer<> runAfter(std::chrono::nanoseconds delay, std::function<void()> work);
 
     /// Reads an attribute.
     /// Errors: the attribute's own StatusCode where Bad, such as not_found (BadNodeIdUnknown).
