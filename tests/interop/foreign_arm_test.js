@@ -8,7 +8,7 @@ const os = require('node:os');
 const path = require('node:path');
 const { after, afterEach, beforeEach, test } = require('node:test');
 const { AttributeIds, OPCUAClient } = require('node-opcua');
-const { runMetier, serve, startProcess, writeCell } = require('./metier_process');
+const { awaitState, runMetier, serve, startProcess, until, writeCell } = require('./metier_process');
 
 const kProgram = path.join(__dirname, 'foreign_arm.js');
 const kModel = path.join(__dirname, '..', '..', 'models', 'ur5.toml');
@@ -24,7 +24,6 @@ const kCycle = 0.01;
 const kLargestSkew = 0.5;
 const kObjectsFolder = 'ns=0;i=85';
 const kHierarchicalReferences = 'ns=0;i=33';
-const kDeadlineMs = 30000;
 // A killed server is noticed at once, one that is silent after 2 s; the machine may be busy.
 const kNoticedMs = 2500;
 // A machine that is busy may begin a command only after the move.
@@ -55,23 +54,6 @@ afterEach(stopBoth);
 
 const move = (joints, ...more) =>
   runMetier(['run', component.url, 'JointPtpMoveSkill', '--set', `TargetJointPosition=${joints}`, ...more]);
-
-/** Asks until `wanted` says yes; the answer. */
-async function until(what, ask, wanted) {
-  const deadline = Date.now() + kDeadlineMs;
-  let seen;
-  while (Date.now() < deadline) {
-    seen = await ask();
-    if (wanted(seen)) {
-      return seen;
-    }
-  }
-  throw new Error(`${what}: ${JSON.stringify(seen)}`);
-}
-
-const awaitState = (url, skill, state) =>
-  until(`${skill} is ${state}`, async () => (await runMetier(['list', url])).output,
-    (output) => new RegExp(`${skill} +${state}`).test(output));
 
 /** Reads values of the arm's own server, as any client would. */
 async function withArm(work) {

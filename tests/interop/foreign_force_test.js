@@ -7,7 +7,7 @@ const os = require('node:os');
 const path = require('node:path');
 const { after, afterEach, before, test } = require('node:test');
 const { DataType, OPCUAClient, VariantArrayType } = require('node-opcua');
-const { runMetier, startProcess, startServer } = require('./metier_process');
+const { awaitState, runMetier, startProcess, startServer } = require('./metier_process');
 
 const kRoot = path.join(__dirname, '..', '..');
 const kSensor = path.join(__dirname, 'foreign_force.js');
@@ -19,7 +19,6 @@ const kStart = '0,0.5,0,-1.5,0,1.1,0';  // rad; the flange looks down
 const kNear = '0.5607,0,0.3887,3.14159,0.04159,3.14159';  // 1 cm below
 const kFar = '0.5607,0,0.1987,3.14159,0.04159,3.14159';  // 20 cm below
 const kSlow = 'MaxVelocity=0.02,0.02,0.02,0.5,0.5,0.5';  // 10 s for the far one
-const kDeadlineMs = 30000;
 
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'foreign_force_'));
 let arm;
@@ -96,21 +95,13 @@ async function measure(newtons) {
   assert.ok(status.isGood(), status.toString());
 }
 
-async function awaitState(skill, state) {
-  const deadline = Date.now() + kDeadlineMs;
-  const wanted = new RegExp(`${skill} +${state}`);
-  while (!wanted.test((await runMetier(['list', arm.url])).output)) {
-    assert.ok(Date.now() < deadline, `${skill} is not ${state}`);
-  }
-}
-
 const forceMove = (target, ...more) => runMetier(['run', component.url, kSkill, '--json',
   '--set', `TargetPosition=${target}`, '--set', 'MaxForce=0,0,20', ...more]);
 
 /** Starts the slow, far line, and does something once it runs; the end of the line. */
 async function meanwhile(act, ...more) {
   const ending = forceMove(kFar, '--set', kSlow, ...more);
-  await awaitState(kLine, 'Running');
+  await awaitState(arm.url, kLine, 'Running');
   await act();
   return ending;
 }
@@ -135,7 +126,7 @@ test('a force ends the line, which is Ready again', async () => {
   assert.deepStrictEqual(result.ForcesExceeded, { x: 0, y: 0, z: -30 });
   assert.strictEqual(result.ReachedPose, null);
   assert.ok(result.ReactionTime > 0 && result.ReactionTime <= result.StoppingTime);
-  await awaitState(kLine, 'Ready');
+  await awaitState(arm.url, kLine, 'Ready');
 });
 
 test('a force that is measured at the flange is turned into the base frame', async () => {
@@ -175,7 +166,7 @@ test('a sensor that dies halts the line, and nothing begins without it', async (
   const { status, errors } = await meanwhile(() => sensor.kill());
   assert.notStrictEqual(status, 0);
   assert.match(errors, /the force is not known any more/);
-  await awaitState(kLine, 'Halted');
+  await awaitState(arm.url, kLine, 'Halted');
   const reset = await runMetier(['reset', component.url, kSkill]);
   assert.strictEqual(reset.status, 0, reset.errors);
   const again = await forceMove(kNear);

@@ -1,11 +1,13 @@
 // A server of another maker with Programs (OPC 10000-10) that know nothing of metier: no StartWith,
 // no Check, no lease, no ExecutionId. Prints "ready URL" and runs until it is ended.
+// With --without-subscriptions it refuses each of them.
 'use strict';
 
 console.log = console.error;  // what node-opcua says; the standard output is for "ready URL"
 const {
   DataType, OPCUAServer, StatusCodes, coerceNodeId, coerceQualifiedName,
 } = require('node-opcua');
+const { kShapes } = require('./foreign_shapes');
 const { freePort } = require('./free_port');
 const { kStates } = require('./program_states');
 const { announce, run } = require('./server_program');
@@ -21,25 +23,14 @@ const kTransitions = {
   SuspendedToReady: { id: 2422, number: 8 },
   ReadyToHalted: { id: 2424, number: 9 },
 };
-const kMethods = ['Start', 'Suspend', 'Resume', 'Halt', 'Reset'];
 
 const nodeId = (id) => ({ dataType: DataType.NodeId, value: coerceNodeId(`ns=0;i=${id}`) });
 const number = (value) => ({ dataType: DataType.UInt32, value });
 const text = (value) => ({ dataType: DataType.LocalizedText, value: { text: value } });
 
-/**
- * A Program that waits for Duration [s] and then says how often it did.
- *
- * @typedef {object} Shape
- * @property {string} name
- * @property {string[]} methods that it has
- * @property {string|null} event the type of its events; null: none
- * @property {boolean} numbers whether its state has a number; its events have none in namespace 0
- * @property {boolean} ids whether states and transitions have NodeIds
- * @property {number} [namespace] of the methods' BrowseNames; default: 0
- */
+/** One Program of a shape. */
 class ForeignProgram {
-  /** @param {Shape} shape */
+  /** @param {import('./foreign_shapes').Shape} shape */
   constructor(space, parent, shape) {
     this.space = space;
     this.shape = shape;
@@ -54,18 +45,24 @@ class ForeignProgram {
       eventNotifier: shape.event ? 1 : 0,
     });
     this.current = this.addStateVariable('CurrentState', 'FiniteStateVariableType');
-    this.last = this.addStateVariable('LastTransition', 'FiniteTransitionVariableType');
+    this.last = shape.lasts ? null : this.addStateVariable('LastTransition', 'FiniteTransitionVariableType');
     for (const method of shape.methods) {
       namespace
         .addMethod(this.object, { browseName: coerceQualifiedName(`${shape.namespace ?? 0}:${method}`), inputArguments: [] })
         .bindMethod((_inputs, _context, done) => done(null, { statusCode: this.call(method) }));
     }
+    if (!shape.lasts) {
+      this.addFields();
+    }
+    this.show();
+  }
+
+  addFields() {
     this.duration = this.addField('ParameterSet', 'Duration', DataType.Double, 0.05);
     this.fails = this.addField('ParameterSet', 'Fails', DataType.Boolean, false);
     this.level = this.addField('ParameterSet', 'Level', DataType.Float, 0.5);
     this.result = this.addField('FinalResultData', 'Count', DataType.UInt32, 0);
     this.note = this.addField('FinalResultData', 'Note', DataType.LocalizedText, { text: '' });
-    this.show();
   }
 
   addStateVariable(name, type) {
@@ -128,19 +125,20 @@ class ForeignProgram {
     clearTimeout(this.timer);
     this.go(possible[1], method);
     if (this.state === 'Running') {
-      this.timer = setTimeout(() => this.end(), 1000 * this.duration.readValue().value.value);
+      const seconds = this.shape.lasts ?? this.duration.readValue().value.value;
+      this.timer = setTimeout(() => this.end(), 1000 * seconds);
     }
     return StatusCodes.Good;
   }
 
   end() {
-    if (this.fails.readValue().value.value) {
+    if (this.fails?.readValue().value.value) {
       this.go('Halted', 'the lamp is broken');
       return;
     }
     this.count += 1;
-    this.result.setValueFromSource({ dataType: DataType.UInt32, value: this.count });
-    this.note.setValueFromSource(text(`level ${this.level.readValue().value.value}`));
+    this.result?.setValueFromSource({ dataType: DataType.UInt32, value: this.count });
+    this.note?.setValueFromSource(text(`level ${this.level.readValue().value.value}`));
     this.go('Ready', 'done');
   }
 
@@ -149,7 +147,9 @@ class ForeignProgram {
     const transition = `${from}To${to}`;
     this.state = to;
     this.show();
-    this.setStateVariable(this.last, transition, kTransitions[transition]);
+    if (this.last) {
+      this.setStateVariable(this.last, transition, kTransitions[transition]);
+    }
     if (this.shape.event) {
       this.object.raiseEvent(this.shape.event, this.fieldsOf(transition, from, to, message));
     }
@@ -172,25 +172,13 @@ class ForeignProgram {
   }
 }
 
-/** One Program per way in which servers differ. */
-const kShapes = [
-  { name: 'Whole', methods: kMethods, event: 'ProgramTransitionEventType', numbers: true, ids: true },
-  { name: 'WithoutNumbers', methods: kMethods, event: 'ProgramTransitionEventType', numbers: false, ids: true },
-  { name: 'PlainEvents', methods: kMethods, event: 'TransitionEventType', numbers: false, ids: true },
-  { name: 'WithoutEvents', methods: kMethods, event: null, numbers: true, ids: true },
-  { name: 'NamesOnly', methods: kMethods, event: 'TransitionEventType', numbers: false, ids: false },
-  {
-    name: 'OwnMethods', methods: kMethods, event: 'TransitionEventType', numbers: false, ids: true,
-    namespace: 1,
-  },
-  { name: 'StartAndHalt', methods: ['Start', 'Halt'], event: 'TransitionEventType', numbers: false, ids: true },
-  { name: 'StartOnly', methods: ['Start'], event: null, numbers: false, ids: true },
-];
-
 async function main() {
   const port = await freePort();
   const server = new OPCUAServer({ port, allowAnonymous: true });
   await server.initialize();
+  if (process.argv.includes('--without-subscriptions')) {
+    server.engine.serverCapabilities.maxSubscriptions = 0;
+  }
   const space = server.engine.addressSpace;
   const namespace = space.getOwnNamespace();
   const lamp = namespace.addObject({ browseName: 'Lamp', organizedBy: space.rootFolder.objects });

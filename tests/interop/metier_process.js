@@ -9,12 +9,18 @@ const readline = require('node:readline');
 
 const kReadyTimeoutMs = 60000;
 const kRunTimeoutMs = 60000;
+const kUntilTimeoutMs = 30000;
+const kBetweenQuestionsMs = 20;
 const kLab = ['--insecure-lab'];
 
 // Records and other state of the programs that a test starts.
 const stateFolder = fs.mkdtempSync(path.join(os.tmpdir(), 'metier_state_'));
 process.env.XDG_STATE_HOME = stateFolder;
-process.on('exit', () => fs.rmSync(stateFolder, { recursive: true, force: true }));
+const children = new Set();
+process.on('exit', () => {
+  children.forEach((child) => child.kill('SIGKILL'));
+  fs.rmSync(stateFolder, { recursive: true, force: true });
+});
 
 function metierProgram() {
   const program = process.env.METIER;
@@ -22,6 +28,21 @@ function metierProgram() {
     throw new Error('METIER must name the metier program');
   }
   return program;
+}
+
+/** @returns {Promise<void>} until the child has ended; with this program it ends in any case */
+function awaitExit(child) {
+  children.add(child);
+  return new Promise((resolve) => child.once('exit', resolve)).then(() => children.delete(child));
+}
+
+/** A test that fails before it ends the child fails at once, and not when ctest loses patience. */
+function doNotWaitFor(child) {
+  [child, child.stdout, child.stderr].forEach((one) => one.unref());
+}
+
+function waitFor(child) {
+  [child, child.stdout, child.stderr].forEach((one) => one.ref());
 }
 
 /**
@@ -42,8 +63,9 @@ function startProcess(program, args) {
     log += text;
     process.stderr.write(text);
   });
-  const ended = new Promise((resolve) => child.once('exit', resolve));
+  const ended = awaitExit(child);
   const end = (signal) => async () => {
+    waitFor(child);
     child.kill(signal);
     await ended;
   };
@@ -54,6 +76,7 @@ function startProcess(program, args) {
     }, kReadyTimeoutMs);
     readline.createInterface({ input: child.stdout }).once('line', (line) => {
       clearTimeout(timer);
+      doNotWaitFor(child);
       const match = /^ready ((?:opc\.tcp|http):\S+)$/.exec(line);
       return match
         ? resolve({ url: match[1], stop: end('SIGTERM'), kill: end('SIGKILL'), log: () => log })
@@ -100,13 +123,14 @@ function serve(folder, kind, lines) {
  */
 function runMetier(args, security = kLab) {
   return new Promise((resolve, reject) => {
-    execFile(metierProgram(), [...security, ...args], { timeout: kRunTimeoutMs }, (error, output, errors) => {
+    const child = execFile(metierProgram(), [...security, ...args], { timeout: kRunTimeoutMs }, (error, output, errors) => {
       if (error && typeof error.code !== 'number') {
         reject(error);
         return;
       }
       resolve({ status: error ? error.code : 0, output, errors });
     });
+    awaitExit(child);
   });
 }
 
@@ -115,13 +139,15 @@ function runMetier(args, security = kLab) {
  *
  * @param {string[]} args
  * @param {RegExp} begun is in the line that it prints, to either output, once it is under way
- * @returns {Promise<{end: Promise<{status: number, output: string}>, interrupt: () => void}>} once
- *     that line is there; `end` has all that it printed; interrupt() is Ctrl-C
+ * @returns {Promise<{end: Promise<{status: number, output: string}>, interrupt: () => void,
+ *     kill: () => void}>} once that line is there; `end` has all that it printed; interrupt() is
+ *     Ctrl-C, kill() is kill -9
  */
 function startMetier(args, begun) {
   const child = spawn(metierProgram(), [...kLab, ...args], { stdio: ['ignore', 'pipe', 'pipe'] });
+  awaitExit(child);
   let output = '';
-  const end = new Promise((resolve) => child.once('close', (status) => resolve({ status, output })));
+  const closed = new Promise((resolve) => child.once('close', (status) => resolve({ status, output })));
   return new Promise((resolve, reject) => {
     const timer = setTimeout(() => {
       child.kill('SIGKILL');
@@ -132,12 +158,20 @@ function startMetier(args, begun) {
         output += text;
         if (begun.test(output)) {
           clearTimeout(timer);
-          resolve({ end, interrupt: () => child.kill('SIGINT') });
+          doNotWaitFor(child);
+          resolve({
+            get end() {
+              waitFor(child);
+              return closed;
+            },
+            interrupt: () => child.kill('SIGINT'),
+            kill: () => child.kill('SIGKILL'),
+          });
         }
       });
     }
     child.once('error', reject);
-    end.then(({ status }) => reject(new Error(`ended with status ${status}: ${output}`)));
+    closed.then(({ status }) => reject(new Error(`ended with status ${status}: ${output}`)));
   });
 }
 
@@ -153,7 +187,7 @@ function startCell(cell) {
   const endpoints = path.join(folder, 'endpoints.json');
   const child = spawn(metierProgram(), [...kLab, 'up', cell, '--free-ports', '--endpoints', endpoints],
     { stdio: ['ignore', 'pipe', 'inherit'] });
-  const ended = new Promise((resolve) => child.once('exit', resolve));
+  const ended = awaitExit(child);
   const stop = async () => {
     child.kill('SIGINT');
     await ended;
@@ -178,4 +212,25 @@ function startCell(cell) {
   });
 }
 
-module.exports = { runMetier, serve, startCell, startMetier, startProcess, startServer, writeCell };
+/** Waits until `metier list` shows a skill in a state. */
+const awaitState = (url, skill, state) =>
+  until(`${skill} is ${state}`, async () => (await runMetier(['list', url])).output,
+    (output) => new RegExp(`${skill} +${state}`).test(output));
+
+/** Asks until `wanted` says yes, for 30 s; the answer. */
+async function until(what, ask, wanted) {
+  const deadline = Date.now() + kUntilTimeoutMs;
+  let seen;
+  while (Date.now() < deadline) {
+    seen = await ask();
+    if (wanted(seen)) {
+      return seen;
+    }
+    await new Promise((resolve) => setTimeout(resolve, kBetweenQuestionsMs));
+  }
+  throw new Error(`not within ${kUntilTimeoutMs} ms: ${what}: ${JSON.stringify(seen)}`);
+}
+
+module.exports = {
+  awaitState, runMetier, serve, startCell, startMetier, startProcess, startServer, until, writeCell,
+};

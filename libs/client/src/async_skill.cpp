@@ -10,6 +10,7 @@
 #include "metier/opcua/text.hpp"
 #include "questions.hpp"
 #include "skill_nodes.hpp"
+#include "state_poll.hpp"
 #include "transition_log.hpp"
 
 namespace metier::client {
@@ -24,7 +25,7 @@ struct AsyncSkill::Impl {
     skill::SkillDescription description{};
     // Shared with the subscription's callback, which may run while this object moves.
     std::shared_ptr<TransitionLog> log = std::make_shared<TransitionLog>();
-    std::vector<opcua::Subscription> subscriptions{};
+    TransitionWatch watch{};
     opcua::Subscription stopping{};
     // Shared with the answers that are on their way.
     std::shared_ptr<LockUse> lock_use{};
@@ -73,6 +74,7 @@ struct NamelessStart {
     // Has a doubt once Start is answered: what it begins may be over before a subscription shows
     // it.
     std::shared_ptr<TransitionLog> log;
+    std::shared_ptr<StatePoll> poll;  // null: there is a subscription
 };
 
 Answer<> written(const std::vector<opcua::StatusCode>& statuses, const NamelessStart& start) {
@@ -86,11 +88,14 @@ Answer<> written(const std::vector<opcua::StatusCode>& statuses, const NamelessS
 
 Answer<> callStart(opcua::Client& client, const NamelessStart& start,
                    AsyncSkill::Done<std::string> done) {
-    return client.callAsync(
-        start.start, [id = start.id, log = start.log, done = std::move(done)](const auto& answer) {
-            done(answer.map([&](const CallResult& /*none*/) { return id; }));
-            log->doubt();
-        });
+    return client.callAsync(start.start, [id = start.id, log = start.log, poll = start.poll,
+                                          done = std::move(done)](const auto& answer) {
+        if (poll && answer) {
+            poll->noteStart();
+        }
+        done(answer.map([&](const CallResult& /*none*/) { return id; }));
+        log->doubt();
+    });
 }
 
 /// Writes the parameters, then calls Start.
@@ -124,10 +129,12 @@ Answer<skill::ExecutionRecord> recordFrom(const std::vector<opcua::DataValue>& v
     record.id = id;
     record.state = now->state;
     const bool given_up = now->last == skill::TransitionNumber::suspended_to_ready;
+    const bool failed = now->state == skill::State::halted ||
+                        now->last == skill::TransitionNumber::halted_to_ready;  // reset since
     if (now->state == skill::State::ready) {
         record.reason = given_up ? skill::Reason::by_client : skill::Reason::finished;
     }
-    if (now->state == skill::State::halted) {
+    if (failed) {
         record.reason = skill::Reason::error;
     }
     const auto first = values.size() - nodes.results.size() - 1;
@@ -138,6 +145,33 @@ Answer<skill::ExecutionRecord> recordFrom(const std::vector<opcua::DataValue>& v
     }
     return record;
 }
+
+// Longest time for which the event of an end may come after the state that shows it.
+constexpr auto kEventTime = std::chrono::milliseconds(200);
+
+/// Says why an execution has ended where only the skill's event does, which may come later than the
+/// state.
+struct TextOfEnd {
+    opcua::Client& client;
+    std::shared_ptr<TransitionLog> log;
+    bool events;  // the skill sends them
+
+    /// Passes the record to `done`, now or when the event should have come.
+    void addTo(skill::ExecutionRecord record,
+               const AsyncSkill::Done<skill::ExecutionRecord>& done) const {
+        if (record.reason_text.empty()) {
+            record.reason_text = log->textOfLast(record.state);
+        }
+        const bool may_come = events && record.state == skill::State::halted;
+        const auto complete = [record, log = log, done]() mutable {
+            record.reason_text = log->textOfLast(record.state);
+            done(std::move(record));
+        };
+        if (!record.reason_text.empty() || !may_come || !client.runAfter(kEventTime, complete)) {
+            done(std::move(record));
+        }
+    }
+};
 
 }  // namespace
 
@@ -163,12 +197,8 @@ Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address,
     }
     impl->log->watch(
         {std::move(watch.on_transition), std::move(watch.on_missed), std::move(watch.on_ended)});
-    METIER_ASSIGN(impl->subscriptions,
+    METIER_ASSIGN(impl->watch,
                   watchTransitions(client, impl->address.node, impl->nodes, impl->log));
-    if (impl->subscriptions.empty()) {
-        return opcua::failed(opcua::status::kBadServiceUnsupported,
-                             impl->address.name + " can be watched neither by events nor by state");
-    }
     return AsyncSkill(std::move(impl));
 }
 
@@ -238,7 +268,8 @@ Answer<> AsyncSkill::Impl::startByWrites(const skill::StartRequest& request,
         request.execution_id,
         {address.node, nodes.methods.at(static_cast<std::size_t>(skill::Method::start))},
         {},
-        log};
+        log,
+        watch.polling.poll()};
     std::vector<opcua::WriteItem> writes;
     for (const auto& [name, value] : request.parameters) {
         const auto found =
@@ -279,7 +310,13 @@ Answer<> AsyncSkill::Impl::startByWrites(const skill::StartRequest& request,
 Answer<> AsyncSkill::call(skill::Method method, Done<> done) const {
     return impl_->send<void>(
         {impl_->nodes.methods.at(static_cast<std::size_t>(method)), toString(method)}, {},
-        std::move(done), [](const std::vector<opcua::Value>& /*none*/) { return Answer<>(); });
+        std::move(done),
+        [poll = impl_->watch.polling.poll()](const std::vector<opcua::Value>& /*none*/) {
+            if (poll) {
+                poll->hurry();
+            }
+            return Answer<>();
+        });
 }
 
 bool AsyncSkill::runsOthers() const noexcept {
@@ -314,14 +351,15 @@ Answer<> AsyncSkill::Impl::look(const std::string& id, Done<skill::ExecutionReco
         items.push_back({result.node});
     }
     return client.readManyAsync(
-        std::move(items), [id, nodes = nodes, log = log, done = std::move(done)](
-                              const Answer<std::vector<opcua::DataValue>>& values) {
+        std::move(items), [id, nodes = nodes, text = TextOfEnd{client, log, watch.events},
+                           done = std::move(done)](const auto& values) {
             auto record = values ? recordFrom(*values, nodes, id)
                                  : Answer<skill::ExecutionRecord>(tl::unexpected(values.error()));
-            if (record && record->reason_text.empty()) {
-                record->reason_text = log->textOfLast(record->state);
+            if (record) {
+                text.addTo(*std::move(record), done);
+            } else {
+                done(std::move(record));
             }
-            done(std::move(record));
         });
 }
 

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "metier/opcua/text.hpp"
+#include "metier/opcua_skill/namespaces.hpp"
+#include "metier/opcua_skill/wire_numbers.hpp"
 #include "questions.hpp"
 
 namespace metier::client {
@@ -19,16 +21,16 @@ using opcua::CallResult;
 using opcua::Failure;
 using opcua::NodeId;
 using opcua::Value;
+using opcua_skill::kDiUri;
+using opcua_skill::LockStatus;
 using namespace std::chrono_literals;
 
 namespace {
 
-constexpr const char* kDiUri = "http://opcfoundation.org/UA/DI/";
 const NodeId kServerCapabilities(0, 2268U);
 
-// InitLockStatus and its like (OPC 10000-100, 7.6): 0, or the reason of a refusal.
-constexpr std::int32_t kDone = 0;
-constexpr std::int32_t kAlreadyLocked = -1;
+constexpr auto kDone = static_cast<std::int32_t>(LockStatus::done);
+constexpr auto kAlreadyLocked = static_cast<std::int32_t>(LockStatus::refused);
 
 // How often a lock is renewed whose server publishes no time, and the limits for one that does.
 constexpr auto kRenewal = 1'000ms;

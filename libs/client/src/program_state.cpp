@@ -5,32 +5,21 @@
 #include <cstdint>
 #include <string>
 #include <utility>
-#include <variant>
+
+#include "metier/opcua_skill/wire_numbers.hpp"
 
 namespace metier::client {
 namespace {
 
 using opcua::NodeId;
 using opcua::Value;
+using opcua_skill::stateId;
+using opcua_skill::transitionId;
 using skill::State;
 using skill::TransitionNumber;
 
-// NodeIds of namespace 0 (OPC 10000-10).
-constexpr std::array<std::pair<std::uint32_t, State>, 4> kStateIds{{{2400, State::ready},
-                                                                    {2402, State::running},
-                                                                    {2404, State::suspended},
-                                                                    {2406, State::halted}}};
-
-constexpr std::uint32_t kFirstTransitionId = 2408;  // HaltedToReady; the next number has the next
-constexpr std::uint32_t kTransitionIdStep = 2;      // but one
+constexpr std::array kStates{State::ready, State::running, State::suspended, State::halted};
 constexpr std::uint32_t kTransitions = 9;
-
-std::optional<std::uint32_t> numericId(const Value& value) {
-    const auto id = value.as<NodeId>();
-    const auto* number =
-        id && id->namespaceIndex() == 0 ? std::get_if<std::uint32_t>(&id->identifier()) : nullptr;
-    return number == nullptr ? std::nullopt : std::optional(*number);
-}
 
 std::string textOf(const Value& value) {
     if (const auto text = value.as<opcua::LocalizedText>()) {
@@ -90,30 +79,28 @@ std::optional<ProgramNow> programNow(const std::vector<opcua::DataValue>& values
 }
 
 std::optional<State> stateFrom(const Naming& naming) {
-    const auto id = numericId(naming.id);
+    const auto id = naming.id.as<NodeId>();
     const auto number = naming.number.as<std::uint32_t>().value_or(0);
     const auto name = textOf(naming.name);
     const auto known = [](const auto& matches) -> std::optional<State> {
-        const auto* found = std::find_if(kStateIds.begin(), kStateIds.end(), matches);
-        return found == kStateIds.end() ? std::nullopt : std::optional(found->second);
+        const auto* found = std::find_if(kStates.begin(), kStates.end(), matches);
+        return found == kStates.end() ? std::nullopt : std::optional(*found);
     };
-    if (const auto state = known([&](const auto& entry) { return id == entry.first; })) {
+    if (const auto state = known([&](State one) { return id && *id == stateId(one); })) {
         return state;
     }
-    if (const auto state = known([&](const auto& entry) {
-            return number == static_cast<std::uint32_t>(entry.second);
-        })) {
+    if (const auto state =
+            known([&](State one) { return number == static_cast<std::uint32_t>(one); })) {
         return state;
     }
-    return known([&](const auto& entry) { return name == toString(entry.second); });
+    return known([&](State one) { return name == toString(one); });
 }
 
 std::optional<TransitionNumber> transitionFrom(const Naming& naming) {
-    if (const auto id = numericId(naming.id);
-        id && *id >= kFirstTransitionId && (*id - kFirstTransitionId) % kTransitionIdStep == 0) {
-        if (const auto named = transitionOf((*id - kFirstTransitionId) / kTransitionIdStep + 1)) {
-            return named;
-        }
+    const auto id = naming.id.as<NodeId>();
+    if (const auto named = firstTransition(
+            [&](TransitionNumber number) { return id && *id == transitionId(number); })) {
+        return named;
     }
     if (const auto numbered = transitionOf(naming.number.as<std::uint32_t>().value_or(0))) {
         return numbered;

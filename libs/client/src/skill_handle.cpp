@@ -54,8 +54,8 @@ Answer<> SkillHandle::Impl::readNodes() {
 }
 
 Answer<> SkillHandle::Impl::subscribe() {
-    subscriptions.clear();
-    METIER_ASSIGN(subscriptions, watchTransitions(client, address.node, nodes, log));
+    watch = {};
+    METIER_ASSIGN(watch, watchTransitions(client, address.node, nodes, log));
     return {};
 }
 
@@ -72,7 +72,7 @@ Answer<> SkillHandle::Impl::refresh() {
     const bool moved = found.node != address.node;
     address = std::move(found);
     METIER_TRY(readNodes());
-    METIER_TRY(moved ? subscribe() : Answer<>());
+    METIER_TRY(moved || watch.polling.poll() ? subscribe() : Answer<>());
     boot = now;
     return {};
 }

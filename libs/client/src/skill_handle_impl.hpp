@@ -36,7 +36,7 @@ struct SkillHandle::Impl {
     std::vector<skill::Field> results{};
     // Shared with the subscription's callback, which may run while this object moves.
     std::shared_ptr<TransitionLog> log = std::make_shared<TransitionLog>();
-    std::vector<opcua::Subscription> subscriptions{};
+    TransitionWatch watch{};
     // Execution that this handle started or resumed last, until awaitEnd() has returned its end.
     std::optional<AwaitedExecution> own{};
     // Shared with the answers that are on their way.
@@ -86,6 +86,9 @@ struct SkillHandle::Impl {
         auto answer = ask();
         if (answer) {
             own = asked;
+        }
+        if (answer && watch.polling.poll()) {
+            watch.polling.poll()->noteStart();
         }
         return answer;
     }

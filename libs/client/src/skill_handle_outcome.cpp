@@ -58,7 +58,6 @@ Failure givenUpFailure(const std::string& skill) {
 
 // How often the state of a skill is looked at that may send nothing at its end.
 constexpr auto kLook = std::chrono::seconds(1);
-constexpr auto kLookUnsubscribed = std::chrono::milliseconds(20);
 // Longest time for which the event of an end may come after the state that shows it.
 constexpr auto kEventTime = std::chrono::milliseconds(200);
 
@@ -149,6 +148,10 @@ Answer<skill::ValueMap> SkillHandle::Impl::outcomeOf(const AwaitedExecution& awa
     if (end.number == TransitionNumber::suspended_to_ready) {
         return tl::unexpected(givenUpFailure(address.name));
     }
+    if (end.number == TransitionNumber::halted_to_ready) {
+        return tl::unexpected(
+            haltedFailure(address.name, skill::Reason::error, "and reset since by another client"));
+    }
     auto values = readResults();
     if (values || !isForLackOfConnection(values.error()) || !nodes.knowsExecutions()) {
         return values;
@@ -224,8 +227,7 @@ Answer<std::optional<TransitionLog::Found>> SkillHandle::Impl::awaitTransition(
     if (nodes.knowsExecutions()) {
         return log->await(from, deadline, wanted);
     }
-    const auto look =
-        std::chrono::steady_clock::now() + (subscriptions.empty() ? kLookUnsubscribed : kLook);
+    const auto look = std::chrono::steady_clock::now() + kLook;
     auto found = log->await(from, std::min(look, deadline), wanted);
     const bool time_to_look = !found && found.error().code == Errc::timeout && look < deadline;
     return time_to_look ? std::optional<TransitionLog::Found>() : std::move(found);
@@ -239,6 +241,9 @@ TransitionEvent SkillHandle::Impl::namelessEnd(const ProgramNow& now, Transition
          found = log->await(from, patience, ends_so)) {
         if (*found) {
             auto event = (*found)->event;
+            if (event.reason_text.empty()) {
+                event.reason_text = reasonText();
+            }
             event.number = now.last.value_or(event.number);  // the event may be of a run before
             event.reason =
                 now.state == State::halted ? skill::Reason::error : skill::Reason::finished;

@@ -15,8 +15,6 @@
 
 namespace metier::client {
 
-inline constexpr const char* kDeviceNamespace = "https://fortiss.org/UA/Device/";
-
 /// A parameter or result together with its node.
 struct FieldNode {
     skill::Field field;

@@ -147,7 +147,7 @@ namespace {
 opcua::Answer<opcua::Subscription> watchNamed(opcua::Client& client, const opcua::NodeId& skill,
                                               std::shared_ptr<TransitionLog> log) {
     // A server that does not yet list the namespace has no extra event fields: any index will do.
-    const auto device = client.namespaceIndex("https://fortiss.org/UA/Device/").value_or(1);
+    const auto device = client.namespaceIndex(opcua_skill::kDeviceUri).value_or(1);
     const opcua::EventFilter filter{.fields = {{{0, "Transition"}, {0, "Number"}},
                                                {{0, "Time"}},
                                                {{0, "Message"}},
@@ -221,24 +221,31 @@ opcua::Answer<std::optional<opcua::Subscription>> watchState(opcua::Client& clie
 
 }  // namespace
 
-opcua::Answer<std::vector<opcua::Subscription>> watchTransitions(
-    opcua::Client& client, const opcua::NodeId& skill, const SkillNodes& nodes,
-    std::shared_ptr<TransitionLog> log) {
-    std::vector<opcua::Subscription> subscriptions;
+opcua::Answer<TransitionWatch> watchTransitions(opcua::Client& client, const opcua::NodeId& skill,
+                                                const SkillNodes& nodes,
+                                                std::shared_ptr<TransitionLog> log) {
+    TransitionWatch watch;
     if (nodes.knowsExecutions()) {
         METIER_ASSIGN(auto named, watchNamed(client, skill, std::move(log)));
-        subscriptions.push_back(std::move(named));
-        return subscriptions;
+        watch.subscriptions.push_back(std::move(named));
+        watch.events = true;
+        return watch;
     }
     METIER_ASSIGN(auto events, watchNameless(client, skill, log));
-    METIER_ASSIGN(auto state, watchState(client, nodes.program, std::move(log),
-                                         events ? Adds::doubts : Adds::states));
+    METIER_ASSIGN(auto state,
+                  watchState(client, nodes.program, log, events ? Adds::doubts : Adds::states));
+    watch.events = events.has_value();
     for (auto* subscription : {&events, &state}) {
         if (*subscription) {
-            subscriptions.push_back(std::move(**subscription));
+            watch.subscriptions.push_back(std::move(**subscription));
         }
     }
-    return subscriptions;
+    if (watch.subscriptions.empty()) {
+        log->forgetState();
+        watch.polling =
+            StatePolling(std::make_shared<StatePoll>(client, nodes.program, std::move(log)));
+    }
+    return watch;
 }
 
 opcua::Answer<opcua::Subscription> watchStopping(
@@ -262,6 +269,18 @@ opcua::Answer<opcua::Subscription> watchStopping(
             }
         });
 }
+
+namespace {
+
+/// State that a Program must pass next to come from one state to another.
+State nextOnTheWay(State from, State to) {
+    if (transitionBetween(from, to)) {
+        return to;
+    }
+    return from == State::halted ? State::ready : State::running;
+}
+
+}  // namespace
 
 void TransitionLog::append(TransitionEvent event) {
     events_.push_back(std::move(event));
@@ -295,17 +314,18 @@ void TransitionLog::addNameless(const opcua::EventNotice& notice) {
 }
 
 void TransitionLog::addState(State state, UtcTime time) {
-    const auto before = std::exchange(state_, state);
-    const auto number = before ? transitionBetween(*before, state) : std::nullopt;
-    if (!number) {
-        return;
+    if (!state_) {
+        state_ = state;
     }
-    TransitionEvent event;
-    event.number = *number;
-    event.from = *before;
-    event.to = state;
-    event.time = time;
-    take({.event = event});
+    while (state_ != state) {
+        TransitionEvent event;
+        event.from = *state_;
+        event.to = nextOnTheWay(*state_, state);
+        event.number = transitionBetween(event.from, event.to).value();
+        event.time = time;
+        state_ = event.to;
+        take({.event = event});
+    }
 }
 
 std::string TransitionLog::textOfLast(State state) const {

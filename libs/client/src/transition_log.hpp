@@ -14,12 +14,14 @@
 #include "metier/opcua/client.hpp"
 #include "metier/skill/program_observer.hpp"
 #include "skill_nodes.hpp"
+#include "state_poll.hpp"
 
 namespace metier::client {
 
 /// The transitions of one skill as they arrive, numbered from 0; the newest thousand are kept.
 ///
-/// Threading: add...() on the client's thread, the rest on any.
+/// Threading: add...() on the client's thread, forgetState() while none of them may run, the rest
+/// on any.
 class TransitionLog {
 public:
     /// Callbacks for what arrives; each may be empty. On the client's thread.
@@ -33,8 +35,11 @@ public:
     /// Adds an event of a server that does not name executions. It is also a doubt: the event may
     /// be of an execution before, so who waits looks at the state.
     void addNameless(const opcua::EventNotice& notice);
-    /// Adds the state of a skill that sends no events: the transition from the state before.
+    /// Adds the state of a skill that sends no events: the transitions from the state before, also
+    /// those that went by unseen.
     void addState(skill::State state, UtcTime time);
+    /// Has addState() begin anew: the state before is of no use, as after a restart of the server.
+    void forgetState() { state_.reset(); }
     /// Text of the newest transition, if it leads to `state`; else empty.
     std::string textOfLast(skill::State state) const;
     /// Counts a doubt, without any event.
@@ -87,14 +92,20 @@ opcua::Answer<opcua::Subscription> watchStopping(
     opcua::Client& client, const opcua::NodeId& skill,
     std::function<void(const skill::StoppingEvent&)> on_stopping);
 
+/// Sources of a skill's transitions.
+struct TransitionWatch {
+    std::vector<opcua::Subscription> subscriptions{};
+    StatePolling polling{};  ///< instead, if the server has no subscriptions
+    bool events = false;     ///< the skill sends events
+};
+
 /// Subscribes to the transitions of a skill; each is added to the log. A skill that does not name
-/// its executions is also watched by its state, or by it alone if it sends no events.
-///
-/// \return no subscription at all, if the server has none for either
+/// its executions is also watched by its state, or by it alone if it sends no events. At a server
+/// without subscriptions the state is read again and again.
 ///
 /// Errors: the server's.
-opcua::Answer<std::vector<opcua::Subscription>> watchTransitions(
-    opcua::Client& client, const opcua::NodeId& skill, const SkillNodes& nodes,
-    std::shared_ptr<TransitionLog> log);
+opcua::Answer<TransitionWatch> watchTransitions(opcua::Client& client, const opcua::NodeId& skill,
+                                                const SkillNodes& nodes,
+                                                std::shared_ptr<TransitionLog> log);
 
 }  // namespace metier::client

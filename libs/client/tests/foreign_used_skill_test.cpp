@@ -19,8 +19,12 @@ using ::testing::ElementsAre;
 /// Keeps the end that it is notified of.
 class End final : public composition::UsedSkillListener {
 public:
+    void onSuspended() override { ++suspended; }
+    void onResumed() override { ++resumed; }
     void onEnd(UsedSkillEnd told) override { end = std::move(told); }
 
+    int suspended = 0;
+    int resumed = 0;
     std::optional<UsedSkillEnd> end;
 };
 
@@ -89,6 +93,21 @@ TEST_F(ForeignUsedSkills, ShareTheLockOfTheirDeviceUntilBothAreOver) {
     ASSERT_TRUE(calls_.await("ExitLock", 1));
     EXPECT_THAT(calls_.all(), ElementsAre("InitLock", "Left Start 1", "Right Start 1", "Left End",
                                           "Right End", "ExitLock"));
+}
+
+TEST_F(ForeignUsedSkills, ReportOnceThatTheyAreSuspendedAndResumed) {
+    connect();
+    begin(*left_, left_end_);
+    ASSERT_TRUE(until([this] { return left_->state() == State::running; }));
+    ASSERT_TRUE(left_->suspend());
+    ASSERT_TRUE(until([this] { return left_end_.suspended > 0; }));
+    ASSERT_TRUE(left_->resume());
+    ASSERT_TRUE(until([this] { return left_end_.resumed > 0; }));
+    end("Left");
+    ASSERT_TRUE(until([this] { return left_end_.end.has_value(); }));
+    EXPECT_EQ(left_end_.end->kind, UsedSkillEnd::Kind::finished);
+    EXPECT_EQ(left_end_.suspended, 1);
+    EXPECT_EQ(left_end_.resumed, 1);
 }
 
 TEST_F(ForeignUsedSkills, AreRefusedByTheLockOfAnotherClient) {

@@ -1,7 +1,12 @@
 // SkillHandle at a Program that names no executions and sends no events.
 #include <gmock/gmock.h>
 
+#include <future>
+#include <optional>
+
+#include "metier/client/async_skill.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/opcua/event_emitter.hpp"
 #include "served_nodes.hpp"
 
 namespace metier::client {
@@ -106,6 +111,58 @@ TEST_F(NamelessSkill, SaysWhatItLacks) {
     ASSERT_FALSE(leased);
     EXPECT_THAT(leased.error().message, HasSubstr("Lamp has no StartWith"));
     EXPECT_EQ(lamp.state().value(), State::ready) << "nothing was started";
+}
+
+/// A lamp that breaks: its event, which says why, comes when the test calls for it.
+class LampThatBreaks : public ::testing::Test {
+protected:
+    LampThatBreaks() {
+        lamp_.name = "Lamp";
+        lamp_.node =
+            served_.nodes()
+                .addObject({{{}, opcua::ids::kObjectsFolder, opcua::ids::kOrganizes, {1, "Lamp"}},
+                            opcua::ids::kProgramStateMachineType,
+                            opcua::EventNotifier::subscribable,
+                            opcua::Children::none})
+                .value();
+        served_.variable(lamp_.node, {0, "CurrentState"}, Value::of("Halted"));
+        emitter_.emplace(opcua::EventEmitter::create(served_.server(),
+                                                     opcua::ids::kTransitionEventType,
+                                                     {{{0, "Transition"}}})
+                             .value());
+        served_.method(lamp_.node, "Start");
+        say_ = served_.method(lamp_.node, "SayWhy");
+        EXPECT_TRUE(served_.nodes().setMethod(
+            say_, [this](const auto& /*caller*/, auto /*in*/) -> Result<std::vector<Value>> {
+                METIER_TRY(emitter_->emit(
+                    {.source = lamp_.node,
+                     .source_name = "Lamp",
+                     .time = std::chrono::system_clock::now(),
+                     .severity = 100,
+                     .message = {"", "the lamp is broken"},
+                     .fields = {Value::of(opcua::LocalizedText{"", "RunningToHalted"})}}));
+                return std::vector<Value>();
+            }));
+    }
+
+    testing::ServedNodes served_;
+    std::optional<opcua::EventEmitter> emitter_;
+    SkillAddress lamp_;
+    opcua::NodeId say_;
+};
+
+TEST_F(LampThatBreaks, IsReportedWithTheReasonOfAnEventThatComesAfterItsState) {
+    auto skill = AsyncSkill::open(served_.client(), lamp_, {});
+    ASSERT_TRUE(skill) << skill.error().message;
+    std::promise<opcua::Answer<skill::ExecutionRecord>> promise;
+    auto record = promise.get_future();
+    ASSERT_TRUE(
+        skill->execution("any", [&](auto answer) { promise.set_value(std::move(answer)); }));
+    ASSERT_TRUE(served_.client().call(lamp_.node, say_));
+    const auto told = record.get();
+    ASSERT_TRUE(told) << told.error().message;
+    EXPECT_EQ(told->state, State::halted);
+    EXPECT_EQ(told->reason_text, "the lamp is broken");
 }
 
 }  // namespace

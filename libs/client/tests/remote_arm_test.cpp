@@ -215,7 +215,7 @@ TEST(RemoteArm, StaysAwayFromAnotherArmAtTheAddressOfTheFormer) {
     ASSERT_TRUE(arm->absence());
     EXPECT_FALSE(arm->absence()->replaced);
     served = std::make_unique<ServedArm>(port, 0.5);
-    ASSERT_TRUE(awaitText(*arm, "tells of other kinematics or limits than before"));
+    ASSERT_TRUE(awaitText(*arm, "publishes other kinematics or limits than before"));
     EXPECT_TRUE(arm->absence()->replaced);
     const auto move = std::make_shared<SmoothMove>(0.1, 60);
     const auto refused = arm->attach(move);

@@ -101,6 +101,10 @@ protected:
             calls_.add(name + " End");
             return go(skill::State::ready);
         });
+        setMethod(served_.method(node, "Suspend"),
+                  [go](auto /*in*/) { return go(skill::State::suspended); });
+        setMethod(served_.method(node, "Resume"),
+                  [go](auto /*in*/) { return go(skill::State::running); });
         setMethod(served_.method(node, "Halt"), [this, name, go](auto /*in*/) {
             calls_.add(name + " Halt");
             return go(skill::State::halted);

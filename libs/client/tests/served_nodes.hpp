@@ -56,6 +56,12 @@ public:
             .value();
     }
     opcua::AddressSpace& nodes() { return server_->nodes(); }
+    opcua::Server& server() { return *server_; }
+    /// Ends client and server; nothing else may be called then.
+    void end() {
+        client_.reset();
+        server_.reset();
+    }
     std::uint16_t port() const { return server_->port(); }
 
     /// Starts the server.

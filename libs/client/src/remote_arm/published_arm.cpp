@@ -81,7 +81,7 @@ std::string changeOf(const PublishedArm& now, const PublishedArm& former, const 
     }
     const bool same = now.kinematics == former.kinematics && now.places == former.places &&
                       now.nodes.has_value() == former.nodes.has_value();
-    return same ? "" : fmt::format("{} tells of other kinematics or limits than before", url);
+    return same ? "" : fmt::format("{} publishes other kinematics or limits than before", url);
 }
 
 }  // namespace metier::client

@@ -181,7 +181,7 @@ Result<void> StreamSession::subscribeState(const KinematicsNodes& nodes) {
             nodes.safety_state, {.sampling_interval = kSafetyInterval},
             [notes = notes_](const opcua::DataValue& value) {
                 if (value.value.isEmpty()) {  // the connection or the subscription has ended
-                    notes->noteBroken(fmt::format("the safety state is not told any more ({})",
+                    notes->noteBroken(fmt::format("the safety state is not published any more ({})",
                                                   value.status.name()));
                     return;
                 }

@@ -23,6 +23,7 @@ using std::chrono::nanoseconds;
 
 constexpr int kQuestions = 10;
 constexpr const char* kResetMeanwhile = "it was reset while it was suspended";
+constexpr const char* kResetSinceHalted = "it was halted, and reset since by another client";
 const opcua::NodeId kCurrentTime(0, 2258U);  // Server/ServerStatus/CurrentTime
 
 // Longer than a composed skill asks the skills that it uses.
@@ -197,6 +198,7 @@ void RemoteUsedSkill::compareClocks(std::function<void(Result<composition::Clock
 void RemoteUsedSkill::begin(skill::StartRequest request, UsedSkillListener& listener) {
     listener_ = &listener;
     execution_ = request.execution_id;
+    reported_ = State::running;
     request.parent.server = connection_.options().own_server;
     started_ = halt_wanted_ = suspend_wanted_ = left_over_ = missed_ = false;
     const auto sent =
@@ -292,9 +294,9 @@ void RemoteUsedSkill::onTransition(const skill::TransitionEvent& event) {
         case TransitionNumber::ready_to_running:
             return;
         case TransitionNumber::running_to_suspended:
-            return tell(&UsedSkillListener::onSuspended);
+            return report(State::suspended);
         case TransitionNumber::suspended_to_running:
-            return tell(&UsedSkillListener::onResumed);
+            return report(State::running);
         case TransitionNumber::running_to_ready:
             return finished();
         case TransitionNumber::suspended_to_ready:
@@ -346,23 +348,17 @@ void RemoteUsedSkill::caughtUp(const std::string& id,
 
 /// Reports the state that missed events would have reported.
 void RemoteUsedSkill::tellMissed(const skill::ExecutionRecord& record) {
-    const auto before = std::exchange(state_, record.state);
+    state_ = record.state;
     switch (record.state) {
         case State::suspended:
-            if (before != State::suspended) {
-                tell(&UsedSkillListener::onSuspended);
-            }
-            return;
         case State::running:
-            if (before == State::suspended) {
-                tell(&UsedSkillListener::onResumed);
-            }
-            return;
+            return report(record.state);
         case State::ready:
             if (record.reason == Reason::finished) {
                 return end({UsedSkillEnd::Kind::finished, record.result});
             }
-            return endHalted(record.reason, kResetMeanwhile);
+            return endHalted(record.reason,
+                             record.reason == Reason::error ? kResetSinceHalted : kResetMeanwhile);
         case State::halted:
             reason_text_ = record.reason_text;
             return endHalted(record.reason, record.reason_text);
@@ -397,6 +393,14 @@ void RemoteUsedSkill::finished() {
 void RemoteUsedSkill::tell(void (UsedSkillListener::*event)()) {
     if (listener_ != nullptr) {
         (listener_->*event)();
+    }
+}
+
+/// The state alone does not say what was reported: a foreign skill's transitions carry no id.
+void RemoteUsedSkill::report(State state) {
+    if (std::exchange(reported_, state) != state) {
+        tell(state == State::suspended ? &UsedSkillListener::onSuspended
+                                       : &UsedSkillListener::onResumed);
     }
 }
 

@@ -72,6 +72,8 @@ private:
     void caughtUp(const std::string& id, const opcua::Answer<skill::ExecutionRecord>& record);
     void tellMissed(const skill::ExecutionRecord& record);
     void tell(void (composition::UsedSkillListener::*event)());
+    /// Reports Suspended or Running of the execution, unless that was reported last.
+    void report(skill::State state);
     void end(UsedSkillEnd end);
     void endHalted(skill::Reason reason, std::string text);
     void endLost(std::string text);
@@ -103,6 +105,7 @@ private:
     std::shared_ptr<OpenSkill> skill_;
     std::string lost_;  // why there is none
     skill::State state_ = skill::State::halted;
+    skill::State reported_ = skill::State::running;  // of the execution, to the listener
     std::string reason_text_;
     bool left_over_ = false;
     // An execution was under way when the connection was lost, at a server that names none.

@@ -81,8 +81,8 @@ public:
     const skill::SkillDescription& description() const noexcept;
 
     /// Whether the server itself names executions. If it does not, another client's execution
-    /// cannot be told from one that was started here, and the server does not halt it when this
-    /// client is lost.
+    /// cannot be distinguished from one that was started here, and the server does not halt it when
+    /// this client is lost.
     bool knowsExecutions() const noexcept;
 
     /// Whether a start locks the skill's device, as SkillHandle::locksDevice().
@@ -123,7 +123,8 @@ public:
     /// Whether the skill runs skills of others, as far as the server publishes it.
     bool runsOthers() const noexcept;
     /// Sends GetExecution, or reads state and results; `done` gets the record, or the server's
-    /// not_found.
+    /// not_found. Where only an event says why a skill is Halted, `done` waits for it, at most 200
+    /// ms longer.
     opcua::Answer<> execution(const std::string& id, Done<skill::ExecutionRecord> done) const;
 
 private:
