@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "metier/link/stop_signal.hpp"
-#include "metier/server/user_folders.hpp"
 #include "printable.hpp"
 
 namespace metier::app {
@@ -51,15 +50,10 @@ Result<std::shared_ptr<RunRecord>> RunRecord::begin(const std::string& records,
     if (records.empty() || records == "off" || lacks.empty()) {
         return std::shared_ptr<RunRecord>();
     }
-    // It removes nothing: how long records are kept is up to the servers of this store.
-    METIER_ASSIGN(
-        auto recorder,
-        records::Recorder::create({.url = records,
-                                   .server = fmt::format("urn:{}:metier:run", server::hostName()),
-                                   .keep = {.age = std::chrono::hours(0), .bytes = 0},
-                                   .on_write_state = [](const records::WriteReport& report) {
-                                       fmt::print(stderr, "metier: {}\n", printable(report.text));
-                                   }}));
+    METIER_ASSIGN(auto recorder,
+                  server::openForeignStore(records, "run", [](const std::string& problem) {
+                      fmt::print(stderr, "metier: {}\n", printable(problem));
+                  }));
     const auto& address = skill.skill.address();
     return std::shared_ptr<RunRecord>(
         new RunRecord(std::move(recorder), {skill.url, address.controllerName(), address.name},

@@ -290,6 +290,9 @@ Commands::Halted Commands::haltServer(const std::string& server,
             halted.error = fmt::format("{} has no Halt", key);
             continue;
         }
+        if (tab) {
+            tab->session().expectHalt(key);
+        }
         // With the callback, which may come after this has given up.
         auto promise = std::make_shared<std::promise<opcua::Answer<opcua::CallResult>>>();
         asked.emplace_back(key, promise->get_future());

@@ -97,7 +97,7 @@ Result<std::shared_ptr<SkillSession>> Person::session(const std::string& server)
     }
     METIER_ASSIGN(auto client, connect(server, fmt::format("metier dashboard{}{}",
                                                            user_.empty() ? "" : " of ", user_)));
-    auto session = std::make_shared<SkillSession>(std::move(client));
+    auto session = std::make_shared<SkillSession>(std::move(client), ForeignStore());
     auto before = session;  // so that the former one ends after the lock is released
     const std::lock_guard lock(mutex_);
     sessions_[server].swap(before);

@@ -47,6 +47,10 @@ public:
     /// A session of this person to Check and Halt by; kept until it is lost.
     /// Errors: as connect().
     Result<std::shared_ptr<SkillSession>> session(const std::string& server);
+    /// Records of what is started at servers that record nothing; null: none.
+    const std::shared_ptr<server::ForeignRecords>& foreignRecords() const noexcept {
+        return connector_.foreign_records;
+    }
     /// Opens a session with every connected server, so that no later request waits for it.
     void openSessions();
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <future>
 #include <utility>
 
+#include "metier/base/random.hpp"
 #include "metier/opcua/text.hpp"
 
 namespace metier::dashboard {
@@ -13,6 +15,8 @@ using client::AsyncSkill;
 using skill::State;
 
 namespace {
+
+constexpr std::size_t kIdDigits = 24;
 
 bool isOver(State state) {
     return state == State::ready || state == State::halted;
@@ -79,10 +83,16 @@ opcua::Answer<SkillSession::Used> SkillSession::use(const LinkedSkill& linked) {
         }
     }
     auto run = std::make_shared<StartedRun>();
-    const auto note = [run](const skill::TransitionEvent& event) { run->note(event.to); };
+    auto record = std::make_shared<ForeignRun>(store_);
+    const auto note = [run, record](const skill::TransitionEvent& event) {
+        run->note(event.to);
+        record->note(event);
+    };
     METIER_ASSIGN(auto opened,
-                  AsyncSkill::open(*client_, linked.address, {.on_transition = note}, locks_));
-    Used used{std::make_shared<AsyncSkill>(std::move(opened)), std::move(run)};
+                  AsyncSkill::open(
+                      *client_, linked.address,
+                      {.on_transition = note, .on_missed = [record] { record->look(); }}, locks_));
+    Used used{std::make_shared<AsyncSkill>(std::move(opened)), std::move(run), std::move(record)};
     const std::lock_guard lock(mutex_);
     return skills_.try_emplace(linked.key, std::move(used)).first->second;
 }
@@ -98,30 +108,42 @@ opcua::Answer<std::string> SkillSession::start(const LinkedSkill& linked,
         return awaitAnswer<std::string>(
             [&](auto done) { return used.skill->startWith(request, std::move(done)); });
     }
+    auto named = request;
+    if (named.execution_id.empty()) {
+        named.execution_id = randomHex(kIdDigits);
+    }
     const bool at_rest = !used.run->isOver() && stands(*used.skill);
     if (!used.run->begin(at_rest)) {
         return opcua::failed(opcua::status::kBadInvalidState, "it runs already");
     }
+    used.record->begin(used.skill, named);
     auto id = awaitAnswer<std::string>(
-        [&](auto done) { return used.skill->startWith(request, std::move(done)); });
+        [&](auto done) { return used.skill->startWith(named, std::move(done)); });
+    used.record->answered(id);
     used.run->answered(id || id.error().delivery != opcua::Failure::Delivery::answered);
     return id;
 }
 
 std::vector<std::string> SkillSession::haltStarted() {
-    std::vector<std::shared_ptr<client::AsyncSkill>> running;
+    std::vector<Used> running;
     {
         const std::lock_guard lock(mutex_);
         for (const auto& [key, used] : skills_) {
             if (!used.skill->knowsExecutions() && !used.run->isOver()) {
-                running.push_back(used.skill);
+                running.push_back(used);
             }
         }
     }
     std::vector<std::future<std::string>> halted;
-    for (const auto& skill : running) {
-        halted.push_back(
-            std::async(std::launch::async, [skill] { return haltUnlessOver(*skill); }));
+    for (const auto& used : running) {
+        halted.push_back(std::async(std::launch::async, [used] {
+            used.record->expectHalt("nobody at the page has control any more");
+            auto why = haltUnlessOver(*used.skill);
+            if (why.empty()) {
+                used.record->settle();
+            }
+            return why;
+        }));
     }
     std::vector<std::string> not_halted;
     for (auto& answer : halted) {
@@ -130,6 +152,13 @@ std::vector<std::string> SkillSession::haltStarted() {
         }
     }
     return not_halted;
+}
+
+void SkillSession::expectHalt(const std::string& key) {
+    const std::lock_guard lock(mutex_);
+    if (const auto used = skills_.find(key); used != skills_.end()) {
+        used->second.record->expectHalt("halted at the page");
+    }
 }
 
 Error explained(const opcua::Failure& failure, const AsyncSkill& skill, std::string_view what) {

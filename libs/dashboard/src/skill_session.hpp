@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -9,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "await_answer.hpp"
+#include "foreign_run.hpp"
 #include "metier/client/async_skill.hpp"
 #include "metier/opcua/client.hpp"
 #include "server_link.hpp"
@@ -44,7 +45,9 @@ private:
 /// Threading: any; waits for the server.
 class SkillSession {
 public:
-    explicit SkillSession(std::unique_ptr<opcua::Client> client) : client_(std::move(client)) {}
+    /// \param store for what is started by it
+    SkillSession(std::unique_ptr<opcua::Client> client, ForeignStore store)
+        : client_(std::move(client)), store_(std::move(store)) {}
 
     opcua::Client& client() noexcept { return *client_; }
     bool isConnected() const noexcept {
@@ -60,43 +63,27 @@ public:
     /// Halts each skill that was started here, still runs, and whose server would let it go on
     /// without this session. \return what was not halted, for a person
     std::vector<std::string> haltStarted();
+    /// Notes that a Halt of a skill is about to be sent from the page.
+    void expectHalt(const std::string& key);
 
 private:
     /// A skill as this session uses it.
     struct Used {
         // Shared with the threads that wait for an answer at this moment.
         std::shared_ptr<client::AsyncSkill> skill;
-        // Shared with the callback of its transitions.
+        // Both shared with the callback of its transitions.
         std::shared_ptr<StartedRun> run;
+        std::shared_ptr<ForeignRun> record;
     };
     opcua::Answer<Used> use(const LinkedSkill& linked);
 
     const std::unique_ptr<opcua::Client> client_;  // first: the skills use it
+    const ForeignStore store_;
     // Shared by the skills.
     const std::shared_ptr<client::DeviceLocks> locks_ = client::makeDeviceLocks(*client_);
     std::mutex mutex_;
     std::map<std::string, Used> skills_;
 };
-
-/// Sends a request of an AsyncSkill and waits for what it is answered, at the latest at the
-/// client's time-out and some more.
-template <typename T, typename Send>
-opcua::Answer<T> awaitAnswer(Send send) {
-    constexpr std::chrono::seconds kLongest{10};
-    // With the callback, which may come after this has given up.
-    auto promise = std::make_shared<std::promise<opcua::Answer<T>>>();
-    auto answer = promise->get_future();
-    auto sent = send([promise](opcua::Answer<T> told) { promise->set_value(std::move(told)); });
-    if (!sent) {
-        return tl::unexpected(sent.error());
-    }
-    if (answer.wait_for(kLongest) != std::future_status::ready) {
-        auto late = opcua::failed(opcua::status::kBadTimeout, "waiting for an answer");
-        late.value().delivery = opcua::Failure::Delivery::unknown;
-        return late;
-    }
-    return answer.get();
-}
 
 /// A refusal with the server's own reason, where it gives one.
 Error explained(const opcua::Failure& failure, const client::AsyncSkill& skill,

@@ -82,8 +82,9 @@ std::set<std::string> ControlsOfPage::release() {
     return keys;
 }
 
-TabSession::TabSession(Board& board, std::string server, std::unique_ptr<opcua::Client> client)
-    : board_(board), server_(std::move(server)), session_(std::move(client)) {
+TabSession::TabSession(Board& board, std::string server, std::unique_ptr<opcua::Client> client,
+                       ForeignStore store)
+    : board_(board), server_(std::move(server)), session_(std::move(client), std::move(store)) {
     session_.client().onConnectionLost(
         [&board, server = server_, held = of_page_](const opcua::Failure& failure) {
             for (const auto& key : held->release()) {
@@ -214,7 +215,9 @@ Result<void> Tabs::take(const std::string& tab, const std::shared_ptr<Person>& p
     METIER_TRY(release(tab, *person, server));
     const auto name = nameOf(tab, *person);
     METIER_ASSIGN(auto client, person->connect(server, name));
-    auto session = std::make_shared<TabSession>(board_, server, std::move(client));
+    METIER_ASSIGN(auto url, watches_.url(server));
+    auto session = std::make_shared<TabSession>(
+        board_, server, std::move(client), ForeignStore{person->foreignRecords(), std::move(url)});
     for (const auto& controller : link->controllers()) {
         METIER_TRY(session->take(controller, tab, name));
     }

@@ -41,7 +41,8 @@ private:
 /// Threading: any.
 class TabSession {
 public:
-    TabSession(Board& board, std::string server, std::unique_ptr<opcua::Client> client);
+    TabSession(Board& board, std::string server, std::unique_ptr<opcua::Client> client,
+               ForeignStore store);
     /// Halts what would go on without it, gives back what it holds, and ends the session.
     ~TabSession();
     TabSession(const TabSession&) = delete;

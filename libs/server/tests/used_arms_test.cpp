@@ -95,11 +95,11 @@ TEST(UsedArms, LeaveUnknownWhatOneOfThemDoesNotTell) {
                  server("a", {move(0.8, 5.0)}), server("b", {move(0.9, std::nullopt)})});
     EXPECT_EQ(told.reach.value, 0.8);
     EXPECT_EQ(told.payload.value, std::nullopt);
-    EXPECT_EQ(told.payload.note, "b, opc.tcp://b does not tell");
+    EXPECT_EQ(told.payload.note, "b, opc.tcp://b does not publish it");
     const auto nothing =
         figures({server("component", {composed("One", {at("a")})}), server("a", {move({}, {})})});
     EXPECT_EQ(nothing.reach.value, std::nullopt);
-    EXPECT_EQ(nothing.reach.note, "a, opc.tcp://a does not tell");
+    EXPECT_EQ(nothing.reach.note, "a, opc.tcp://a does not publish it");
 }
 
 TEST(UsedArms, LeaveUnknownWhatNobodyWasAskedFor) {

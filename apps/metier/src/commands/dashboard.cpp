@@ -15,6 +15,8 @@
 #include "metier/link/start_watch.hpp"
 #include "metier/link/stop_signal.hpp"
 #include "metier/opcua/search.hpp"
+#include "metier/records/recorder.hpp"
+#include "metier/server/foreign_records.hpp"
 #include "metier/server/ready_line.hpp"
 #include "recorded.hpp"
 #include "robot_argument.hpp"
@@ -86,6 +88,21 @@ std::string recordsOf(const DashboardOptions& options, const Cell& cell) {
     return said.empty() ? defaultRecords() : said == "off" ? "" : said;
 }
 
+/// Records of what is started from the page at servers that record nothing; null: none are kept.
+std::shared_ptr<server::ForeignRecords> foreignRecords(const std::string& store) {
+    if (store.empty()) {
+        return nullptr;
+    }
+    return std::make_shared<server::ForeignRecords>([store] {
+        const auto warn = [](const std::string& problem) { spdlog::warn("{}", problem); };
+        auto opened = server::openForeignStore(store, "dashboard", warn);
+        if (!opened) {
+            spdlog::warn("what the page starts is not recorded: {}", opened.error().message);
+        }
+        return opened;
+    });
+}
+
 std::string urlOf(const std::string& address, std::uint16_t port) {
     const bool v6 = address.find(':') != std::string::npos;
     return fmt::format("http://{}{}{}:{}", v6 ? "[" : "", address, v6 ? "]" : "", port);
@@ -131,11 +148,13 @@ Result<Exit> runDashboard(const DashboardOptions& options, const CommandContext&
     auto starting = std::make_unique<link::StartWatch>(stop);
     METIER_ASSIGN(auto cell, asUsage(cellOf(options)));
     auto records = recordsOf(options, cell);
+    auto connector = connectorOf(context.identity);
+    connector.foreign_records = foreignRecords(records);
     METIER_ASSIGN(auto models, loadAllRobots());
     const SystemClock clock;
     auto started = Dashboard::start(
         {.cell = std::move(cell),
-         .connector = connectorOf(context.identity),
+         .connector = std::move(connector),
          .lab = context.security.insecure_lab,
          .address = options.address,
          .port = options.port,
@@ -186,11 +205,12 @@ void addDashboard(CLI::App& app, CommandContext& context) {
                         "Take the addresses of the cell from this file of `metier up --endpoints`");
     command->add_option("--discovery", options->discovery,
                         "Also show the servers that these discovery servers know");
-    command->add_flag("--mdns", options->mdns, "Also show the servers that mDNS tells of");
+    command->add_flag("--mdns", options->mdns, "Also show the servers that mDNS finds");
     command
         ->add_option("--records", options->records,
-                     "Where servers record what they execute: a file, sqlite:FILE, "
-                     "postgresql://..., or off [as the cell's file says, else records.db in "
+                     "Where servers record what they execute, and this page what it starts at "
+                     "servers that record nothing: a file, sqlite:FILE, postgresql://..., or off "
+                     "[as the cell's file says, else records.db in "
                      "~/.local/state/metier]")
         ->check(withoutPassword());
     addHttpOptions(*command, *options);

@@ -77,7 +77,7 @@ private:
     static void take(std::optional<double> value, const opcua::FoundServer& server,
                      Figure& figure) {
         if (!value) {
-            figure.unknown = fmt::format("{} does not tell", nameOf(server));
+            figure.unknown = fmt::format("{} does not publish it", nameOf(server));
         } else if (!figure.least || *value < *figure.least) {
             figure.least = value;
             figure.least_of = nameOf(server);

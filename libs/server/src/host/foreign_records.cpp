@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "metier/server/user_folders.hpp"
 #include "metier/skill/json.hpp"
 #include "metier/skill/state.hpp"
 
@@ -53,7 +54,25 @@ records::Outcome outcomeOf(const UsedSkillEnd& end) {
 
 }  // namespace
 
+Result<std::unique_ptr<records::Recorder>> openForeignStore(
+    const std::string& records, const std::string& program,
+    std::function<void(const std::string& text)> on_problem) {
+    return records::Recorder::create(
+        {.url = records,
+         .server = fmt::format("urn:{}:metier:{}", hostName(), program),
+         .keep = {.age = std::chrono::hours(0), .bytes = 0},
+         .on_write_state = [on_problem = std::move(on_problem)](
+                               const records::WriteReport& report) { on_problem(report.text); }});
+}
+
 ForeignRecords::Key ForeignRecords::begin(records::ExecutionRow execution) {
+    const std::lock_guard lock(mutex_);
+    if (const auto open = std::exchange(open_, nullptr)) {
+        if (auto opened = open()) {
+            own_ = std::move(*opened);
+            recorder_ = own_.get();
+        }
+    }
     const auto key = recorder_ == nullptr ? Key{0} : recorder_->begin(std::move(execution));
     if (key != 0) {
         under_way_.insert(key);
@@ -62,18 +81,21 @@ ForeignRecords::Key ForeignRecords::begin(records::ExecutionRow execution) {
 }
 
 void ForeignRecords::add(Key key, records::Transition transition) {
+    const std::lock_guard lock(mutex_);
     if (under_way_.contains(key)) {
         recorder_->transition(key, std::move(transition));
     }
 }
 
 void ForeignRecords::end(Key key, records::Outcome outcome) {
+    const std::lock_guard lock(mutex_);
     if (under_way_.erase(key) != 0) {
         recorder_->end(key, std::move(outcome));
     }
 }
 
 void ForeignRecords::letGo() {
+    const std::lock_guard lock(mutex_);
     for (const auto key : std::exchange(under_way_, {})) {
         recorder_->end(key, outcomeOf({UsedSkillEnd::Kind::lost,
                                        {},
@@ -81,6 +103,7 @@ void ForeignRecords::letGo() {
                                        "the server that had started it was stopped"}));
     }
     recorder_ = nullptr;
+    open_ = nullptr;
 }
 
 ForeignExecution::ForeignExecution(std::shared_ptr<ForeignRecords> records,

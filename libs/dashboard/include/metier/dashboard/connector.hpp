@@ -1,10 +1,15 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "metier/base/error.hpp"
 #include "metier/opcua/client.hpp"
+
+namespace metier::server {
+class ForeignRecords;
+}  // namespace metier::server
 
 namespace metier::dashboard {
 
@@ -18,6 +23,9 @@ struct Connector {
     std::function<std::string(const opcua::Failure&)> advice;
     /// Called after a connection to a server was made with these options; may be empty.
     std::function<void(const opcua::ClientOptions&, const std::string& url)> connected{};
+    /// Records of what is started from the page at servers that record nothing themselves; null:
+    /// none.
+    std::shared_ptr<server::ForeignRecords> foreign_records{};
 };
 
 }  // namespace metier::dashboard

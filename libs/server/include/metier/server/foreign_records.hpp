@@ -1,8 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "metier/composition/used_skill.hpp"
 #include "metier/records/recorder.hpp"
@@ -21,10 +24,21 @@ struct ForeignPlace {
     std::string skill;
 };
 
+/// Opens a store for what a client program starts at foreign servers. Nothing is removed from it:
+/// how long records are kept is up to the servers that use it.
+/// \param records a store, as records::Store::open() takes it
+/// \param program name of the client in the records: "run"
+/// \param on_problem called with a text for a person when the store cannot be written, and when it
+///                   can be again; on the thread that writes
+/// Errors: invalid_argument (not a store). Threads: any.
+Result<std::unique_ptr<records::Recorder>> openForeignStore(
+    const std::string& records, const std::string& program,
+    std::function<void(const std::string& text)> on_problem);
+
 /// Records of executions at servers that record none themselves, kept by the client that starts
 /// them.
 ///
-/// Threading: one thread at a time; letGo() once no execution is begun any more.
+/// Threading: any; letGo() once no execution is begun any more.
 class ForeignRecords {
 public:
     /// Key of one execution; 0: none is recorded.
@@ -32,6 +46,9 @@ public:
 
     /// \param recorder used until letGo()
     explicit ForeignRecords(records::Recorder& recorder) : recorder_(&recorder) {}
+    /// Opens the store with the first execution; without it nothing is recorded.
+    explicit ForeignRecords(std::function<Result<std::unique_ptr<records::Recorder>>()> open)
+        : open_(std::move(open)) {}
 
     /// Begins a record. \return 0 if there is none; nothing of it is recorded then
     Key begin(records::ExecutionRow execution);
@@ -43,7 +60,11 @@ public:
     void letGo();
 
 private:
-    records::Recorder* recorder_;  // null after letGo()
+    std::mutex mutex_;
+    // Guarded by mutex_.
+    std::function<Result<std::unique_ptr<records::Recorder>>()> open_;  // empty: it was called
+    std::unique_ptr<records::Recorder> own_;
+    records::Recorder* recorder_ = nullptr;  // null before the first execution and after letGo()
     std::set<Key> under_way_;
 };
 
@@ -53,7 +74,7 @@ private:
 ///     record.add(State::running, State::suspended);
 ///     record.end({UsedSkillEnd::Kind::finished, result});
 ///
-/// Threading: as ForeignRecords.
+/// Threading: one thread at a time.
 class ForeignExecution {
 public:
     /// \param records not null
