@@ -298,6 +298,7 @@ TEST_F(Find, NamesWhatFitsEachSkillThatACompositionUses) {
     EXPECT_THAT(found.output, HasSubstr("ptp: CartesianPtpMoveSkillType\n" + strong_.url()));
     EXPECT_THAT(found.output, HasSubstr("IiwaController/CartesianPtpMoveSkill fits: "));
     EXPECT_THAT(found.output, HasSubstr("line: CartesianLinearMoveSkillType\n"));
+    EXPECT_THAT(found.output, HasSubstr("steps:\n"));
     const auto lacking = find({compositionFile("corner_by_parts.toml"), "--json"});
     EXPECT_EQ(lacking.status, 1) << "nobody serves a LineToSkill";
     const auto plan = nlohmann::json::parse(lacking.output);
@@ -307,6 +308,11 @@ TEST_F(Find, NamesWhatFitsEachSkillThatACompositionUses) {
     EXPECT_EQ(plan.at("roles").at(0).at("role"), "ptp");
     EXPECT_EQ(plan.at("roles").at(0).at("candidates").size(), 2U) << "of either arm";
     EXPECT_TRUE(plan.at("roles").at(1).at("candidates").empty());
+    const auto& first = plan.at("steps").at(0);
+    EXPECT_EQ(first.at("role"), "ptp");
+    EXPECT_EQ(first.at("by").size(), 2U);
+    EXPECT_EQ(first.at("by").at(0).at("skill"), "CartesianPtpMoveSkill");
+    EXPECT_EQ(plan.at("steps").back().at("by").size(), 0U) << "nobody can";
     const auto left_out = find({compositionFile("corner_if_possible.toml")});
     EXPECT_EQ(left_out.status, 0) << left_out.output;
     EXPECT_THAT(left_out.output, HasSubstr("nothing fits; its steps are left out"));

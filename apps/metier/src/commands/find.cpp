@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -216,11 +219,93 @@ bool isFile(const std::string& task) {
     return std::filesystem::path(task).extension() == ".toml";
 }
 
-/// The skills that could take the roles of a composition file.
+/// A step of a composition that runs a used skill.
+struct CallStep {
+    std::string path;  ///< names of the step and of those around it: "take/grasp"
+    std::string use;
+};
+
+/// The steps that run used skills, in the order of the file.
+void addCalls(const composition::Step& step, const std::string& around,
+              std::vector<CallStep>& calls) {
+    const bool named = !around.empty() && !step.name.empty();
+    const auto path = named ? around + "/" + step.name : around + step.name;
+    if (step.kind == composition::StepKind::call) {
+        calls.push_back({step.name.empty() ? step.key : path, step.use});
+    }
+    for (const auto* inner : {&step.steps, &step.otherwise}) {
+        for (const auto& one : *inner) {
+            addCalls(one, path, calls);
+        }
+    }
+}
+
+std::string placeOf(const nlohmann::json& candidate) {
+    const auto controller = candidate.at("controller").get<std::string>();
+    return fmt::format("{}{}{} ({})", controller, controller.empty() ? "" : "/",
+                       candidate.at("skill").get<std::string>(),
+                       candidate.at("url").get<std::string>());
+}
+
+/// Steps of a composition, each with all who could do it.
+class Plan {
+public:
+    /// \param fitting candidates that fit, by the alias of the use
+    Plan(const composition::Definition& definition,
+         std::map<std::string, std::vector<nlohmann::json>> fitting)
+        : fitting_(std::move(fitting)) {
+        addCalls(definition.root, "", calls_);
+        for (const auto& use : definition.uses) {
+            nobody_[use.alias] = use.optional ? "nobody: it is left out" : "nobody";
+        }
+    }
+
+    nlohmann::json json() const {
+        auto steps = nlohmann::json::array();
+        for (const auto& [path, use] : calls_) {
+            auto by = nlohmann::json::array();
+            for (const auto& candidate : fitting_.at(use)) {
+                by.push_back({{"url", candidate.at("url")},
+                              {"server", candidate.at("server")},
+                              {"controller", candidate.at("controller")},
+                              {"skill", candidate.at("skill")}});
+            }
+            steps.push_back({{"step", path}, {"role", use}, {"by", by}});
+        }
+        return steps;
+    }
+    void print() const {
+        fmt::print("steps:\n");
+        for (const auto& [path, use] : calls_) {
+            std::vector<std::string> by;
+            for (const auto& candidate : fitting_.at(use)) {
+                by.push_back(placeOf(candidate));
+            }
+            fmt::print(
+                "{:<28} {:<12} {}\n", path, use,
+                by.empty() ? nobody_.at(use) : printable(fmt::format("{}", fmt::join(by, " or "))));
+        }
+    }
+
+private:
+    std::vector<CallStep> calls_;
+    std::map<std::string, std::vector<nlohmann::json>> fitting_;  // by the alias of the use
+    std::map<std::string, std::string> nobody_;                   // text of a use that nothing fits
+};
+
+std::vector<nlohmann::json> fittingOf(const nlohmann::json& candidates) {
+    std::vector<nlohmann::json> fitting;
+    std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(fitting),
+                 [](const auto& candidate) { return candidate.at("fits").template get<bool>(); });
+    return fitting;
+}
+
+/// The skills that could take the roles of a composition file, and its steps.
 Result<Exit> findRoles(const FindOptions& options, const composition::Definition& definition,
                        const std::vector<server::SurveyedServer>& servers) {
     bool all = true;
     auto roles = nlohmann::json::array();
+    std::map<std::string, std::vector<nlohmann::json>> fitting;
     for (const auto& use : definition.uses) {
         auto asked = options;
         asked.task = use.type;
@@ -236,14 +321,21 @@ Result<Exit> findRoles(const FindOptions& options, const composition::Definition
         if (!options.json && found.fitting() == 0) {
             fmt::print("nothing fits{}\n", use.optional ? "; its steps are left out" : "");
         }
+        fitting[use.alias] = fittingOf(found.candidates());
         roles.push_back({{"role", use.alias},
                          {"type", use.type},
                          {"optional", use.optional},
                          {"candidates", found.candidates()}});
     }
+    const Plan plan(definition, std::move(fitting));
     if (options.json) {
-        const nlohmann::json plan{{"skill", definition.name}, {"possible", all}, {"roles", roles}};
-        fmt::print("{}\n", plan.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        const nlohmann::json answer{{"skill", definition.name},
+                                    {"possible", all},
+                                    {"roles", roles},
+                                    {"steps", plan.json()}};
+        fmt::print("{}\n", answer.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    } else {
+        plan.print();
     }
     return all ? Exit::success : Exit::failed;
 }
