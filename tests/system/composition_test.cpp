@@ -349,6 +349,23 @@ TEST(GuideToCompositions, ShowsTheFilesThatRunHere) {
     EXPECT_THAT(run.output, HasSubstr("Deviation"));
 }
 
+TEST(VisitSkill, ArrivesInAJointPositionFromWhichItsLineIsPossible) {
+    const auto cell = std::filesystem::path(METIER_SOURCE_DIR) / "cells" / "visit.toml";
+    const ServerProcess arm("iiwa", {"--port", "0"}, cell);
+    const ServerProcess visit("visit", {"--port", "0", "--use", "iiwa=" + arm.url()}, cell);
+    const std::string pose = "-0.442,-0.077,0.174,3.461,0.005,2.92";
+    const std::string above = "-0.442,-0.077,0.474,3.461,0.005,2.92";
+    const auto nearest =
+        runMetier({"run", arm.url(), "CartesianPtpMoveSkill", "--set", "TargetPosition=" + above});
+    ASSERT_EQ(nearest.status, 0) << nearest.output;
+    const auto line = runMetier(
+        {"run", arm.url(), "CartesianLinearMoveSkill", "--set", "TargetPosition=" + pose});
+    EXPECT_NE(line.status, 0) << "impossible from where a PTP alone arrives";
+    const auto visited = runMetier(
+        {"run", visit.url(), "VisitSkill", "--set", "Pose=" + pose, "--set", "Approach=0.3"});
+    EXPECT_EQ(visited.status, 0) << visited.output;
+}
+
 TEST(Graph, IsDrawnAsTextAndTellsWhatSvgNeeds) {
     const auto file =
         std::filesystem::path(METIER_SOURCE_DIR) / "compositions" / "pick_and_place.toml";
