@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "metier/opcua_skill/wire_numbers.hpp"
 #include "model_ids.hpp"
 #include "owner_loss.hpp"
 #include "skill_node.hpp"
@@ -19,10 +20,6 @@ using opcua::CallContext;
 using opcua::NodeId;
 using opcua::Value;
 using Inputs = std::span<const Value>;
-
-// InitLockStatus and its like (OPC 10000-100, 7.6): negative numbers are refusals.
-constexpr std::int32_t kLockDone = 0;
-constexpr std::int32_t kLockRefused = -1;
 
 /// A Method of a controller.
 struct Call {
@@ -49,7 +46,8 @@ template <typename Work>
 opcua::MethodHandler withStatus(std::shared_ptr<skill::Control> control, Work work) {
     return [control, work](const CallContext& context, Inputs /*inputs*/) {
         const auto outcome = std::invoke(work, *control, callerOf(context.session));
-        return Result<std::vector<Value>>({Value::of(outcome ? kLockDone : kLockRefused)});
+        const auto status = outcome ? LockStatus::done : LockStatus::refused;
+        return Result<std::vector<Value>>({Value::of(static_cast<std::int32_t>(status))});
     };
 }
 

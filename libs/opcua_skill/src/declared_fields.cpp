@@ -90,7 +90,7 @@ private:
                 return found;
             }
         }
-        return childOf(nodes_, NodeId(0, 15318U), name);  // BaseAnalogType
+        return childOf(nodes_, opcua::ids::kBaseAnalogType, name);
     }
 
     const AddressSpace& nodes_;

@@ -149,11 +149,10 @@ Result<void> publishArmFigures(opcua::AddressSpace& nodes, const NodeId& kinemat
     using skill::ValueType;
     FigureMaker maker(nodes, kinematics);
     if (figures.commanded_joint_position) {
-        maker.live(
-            {"CommandedJointPosition",
-             "Joint positions that the controller was last told to go to, axis 1 first [rad].",
-             &skill::kRadian, ValueType::numbers},
-            [read = figures.commanded_joint_position] { return valueOf(read()); });
+        maker.live({"CommandedJointPosition",
+                    "Joint positions that the controller was last commanded, axis 1 first [rad].",
+                    &skill::kRadian, ValueType::numbers},
+                   [read = figures.commanded_joint_position] { return valueOf(read()); });
     }
     if (figures.standstill) {
         maker.live({"Standstill", "True while the measured arm does not move.", nullptr,

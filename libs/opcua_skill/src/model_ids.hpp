@@ -6,22 +6,17 @@
 #include "metier/base/error.hpp"
 #include "metier/opcua/address_space.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
+#include "metier/opcua_skill/wire_numbers.hpp"
 #include "metier/skill/state.hpp"
 
 namespace metier::opcua_skill {
 
-inline constexpr std::string_view kDeviceUri = "https://fortiss.org/UA/Device/";
-inline constexpr std::string_view kRoboticsUri = "https://fortiss.org/UA/Robotics/";
-inline constexpr std::string_view kDiUri = "http://opcfoundation.org/UA/DI/";
-inline constexpr std::string_view kOpcRoboticsUri = "http://opcfoundation.org/UA/Robotics/";
-
 /// SkillType in the Device namespace (published 2020).
 inline constexpr std::uint32_t kSkillTypeId = 15034;
-
-/// The state's node in ProgramStateMachineType.
-opcua::NodeId stateId(skill::State state);
-/// The transition's node in ProgramStateMachineType.
-opcua::NodeId transitionId(skill::TransitionNumber number);
+/// DeviceSet in the namespace of OPC 10000-100.
+inline constexpr std::uint32_t kDeviceSetId = 5001;
+/// MotorType in the namespace of OPC 40010-1.
+inline constexpr std::uint32_t kMotorTypeId = 1019;
 
 /// Ids of the model's nodes with the namespace indices of one server.
 struct ModelIds {

@@ -19,13 +19,11 @@ using opcua::QualifiedName;
 using opcua::Reference;
 using opcua::Value;
 
-constexpr std::uint32_t kDeviceSet = 5001;
 constexpr std::uint32_t kMotionDeviceSystemType = 1002;
 constexpr std::uint32_t kControllerType = 1003;
 constexpr std::uint32_t kSoftwareType = 15106;
 constexpr std::uint32_t kAxisType = 16601;
 constexpr std::uint32_t kPowerTrainType = 16794;
-constexpr std::uint32_t kMotorType = 1019;
 constexpr std::uint32_t kTaskControlType = 1011;
 constexpr std::uint32_t kSafetyStateType = 1013;
 constexpr std::uint32_t kControls = 4002;
@@ -146,7 +144,7 @@ private:
 
     NodeId addSystem() {
         auto system =
-            objectSpec(NodeId(index_.di, kDeviceSet), own(spec_.name),
+            objectSpec(NodeId(index_.di, kDeviceSetId), own(spec_.name),
                        NodeId(index_.opc_robotics, kMotionDeviceSystemType), spec_.description);
         system.node.id = NodeId(spec_.namespace_index, spec_.name);
         system.event_notifier = opcua::EventNotifier::subscribable;
@@ -191,7 +189,7 @@ private:
                                      NodeId(index_.opc_robotics, kPowerTrainType),
                                      fmt::format("Drive of axis {}.", number)));
         const auto motor =
-            steps_.object(objectSpec(train, own("Motor"), NodeId(index_.opc_robotics, kMotorType),
+            steps_.object(objectSpec(train, own("Motor"), NodeId(index_.opc_robotics, kMotorTypeId),
                                      fmt::format("Motor of axis {}.", number)));
         const auto parameters = steps_.find(motor, {index_.di, "ParameterSet"});
         const auto temperature = steps_.find(parameters, {index_.opc_robotics, "MotorTemperature"});
@@ -277,7 +275,7 @@ private:
 Result<MotionDeviceSystem> findMotionDeviceSystem(const AddressSpace& nodes) {
     METIER_ASSIGN(const auto index, Namespaces::of(nodes));
     METIER_ASSIGN(const auto system,
-                  firstOfType(nodes, NodeId(index.di, kDeviceSet),
+                  firstOfType(nodes, NodeId(index.di, kDeviceSetId),
                               NodeId(index.opc_robotics, kMotionDeviceSystemType)));
     METIER_ASSIGN(const auto devices, nodes.find(system, {index.opc_robotics, "MotionDevices"}));
     METIER_ASSIGN(const auto controllers, nodes.find(system, {index.opc_robotics, "Controllers"}));

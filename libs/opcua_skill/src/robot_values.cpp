@@ -14,8 +14,6 @@ using opcua::DataValue;
 using opcua::NodeId;
 using ReadState = std::function<KinematicsState()>;
 
-constexpr std::uint32_t kMotorTypeId = 1019;
-
 /// Names of OPC DI and OPC Robotics in one server.
 struct Names {
     std::uint16_t di = 0;

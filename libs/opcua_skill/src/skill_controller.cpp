@@ -11,7 +11,6 @@ using opcua::AddressSpace;
 using opcua::NodeId;
 using opcua::Reference;
 
-constexpr std::uint32_t kDevices = 5001;
 constexpr std::uint32_t kISkillControllerType = 15396;
 constexpr std::uint32_t kIControlLeaseType = 20056;
 constexpr std::uint32_t kLockingServicesType = 6388;
@@ -83,7 +82,7 @@ Result<SkillController> publishSkillController(AddressSpace& nodes, const std::s
     METIER_ASSIGN(const auto di, nodes.namespaceIndex(kDiUri));
     METIER_ASSIGN(auto controller,
                   nodes.addObject({.node = {.id = NodeId(kOwnNamespace, name),
-                                            .parent = NodeId(di, kDevices),
+                                            .parent = NodeId(di, kDeviceSetId),
                                             .browse_name = {kOwnNamespace, name},
                                             .description = {"en", description}},
                                    .event_notifier = opcua::EventNotifier::subscribable}));
@@ -95,7 +94,7 @@ Result<SkillController> publishSkillController(AddressSpace& nodes, const std::s
 Result<SkillController> findSkillController(const opcua::AddressSpace& nodes) {
     METIER_ASSIGN(const auto di, nodes.namespaceIndex(kDiUri));
     METIER_ASSIGN(const auto device, nodes.namespaceIndex(kDeviceUri));
-    METIER_ASSIGN(const auto objects, nodes.browse(NodeId(di, kDevices)));
+    METIER_ASSIGN(const auto objects, nodes.browse(NodeId(di, kDeviceSetId)));
     for (const auto& object : objects) {
         if (auto skills = nodes.find(object.target, {device, "Skills"})) {
             return SkillController{object.target, std::move(*skills)};

@@ -28,10 +28,8 @@ using skill::Field;
 using skill::SkillType;
 
 // Namespace 0.
-const NodeId kNamespaceArray{0, 2255U};
 const NodeId kMandatoryRule{0, 78U};
 const NodeId kOptionalRule{0, 80U};
-const NodeId kRangeType{0, 15318U};
 const NodeId kUnitType{0, 17497U};
 const NodeId kUnitAndRangeType{0, 17570U};
 const NodeId kHasRule{0, 37U};
@@ -337,7 +335,7 @@ private:
         const bool has_unit = field.unit.code != skill::kOne.code;
         const auto variable_type = has_unit && field.range ? kUnitAndRangeType
                                    : has_unit              ? kUnitType
-                                   : field.range           ? kRangeType
+                                   : field.range           ? opcua::ids::kBaseAnalogType
                                                            : opcua::ids::kBaseDataVariableType;
         add({.element = "UAVariable",
              .path = path,
@@ -516,7 +514,7 @@ private:
 }  // namespace
 
 Result<std::string> nodesetOf(const skill::SkillTypes& types, const AddressSpace& nodes) {
-    METIER_ASSIGN(const auto table, nodes.read(kNamespaceArray));
+    METIER_ASSIGN(const auto table, nodes.read(opcua::ids::kNamespaceArray));
     METIER_ASSIGN(auto uris, table.value.as<std::vector<std::string>>());
     return TypesWriter(types, nodes, FileNames(types.uri, std::move(uris))).write();
 }

@@ -4,7 +4,9 @@
 #include "metier/nodesets/ids.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/opcua/server.hpp"
+#include "metier/opcua_skill/namespaces.hpp"
 #include "metier/opcua_skill/safety_state_kind.hpp"
+#include "metier/opcua_skill/wire_numbers.hpp"
 #include "metier/skill/state.hpp"
 
 namespace metier::opcua_skill::testing {
@@ -21,13 +23,13 @@ protected:
         server_ = opcua::Server::create(options).value();
         EXPECT_TRUE(server_->start());
         client_ = opcua::Client::connect(server_->endpointUrl(), {}).value();
-        index_ = client_->namespaceIndex("urn:metier:skills").value();
     }
 
     /// Names in the order of their numbers, from 0.
-    std::vector<std::string> namesAt(std::uint32_t enum_strings) {
+    std::vector<std::string> namesAt(std::uint32_t enum_strings,
+                                     std::string_view uri = kMetierUri) {
         std::vector<std::string> names;
-        const auto value = client_->read({index_, enum_strings});
+        const auto value = client_->read({client_->namespaceIndex(uri).value(), enum_strings});
         EXPECT_TRUE(value);
         const auto texts = value->as<std::vector<opcua::LocalizedText>>();
         EXPECT_TRUE(texts);
@@ -39,7 +41,6 @@ protected:
 
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua::Client> client_;
-    std::uint16_t index_ = 0;
 };
 
 TEST_F(NamesOfEnumerations, OfSafetyStatesAreThoseOfTheNodeSet) {
@@ -61,6 +62,30 @@ TEST_F(NamesOfEnumerations, OfReactionsToTheLossOfAnOwnerAreInTheOrderOfTheirNum
     EXPECT_EQ(static_cast<int>(Action::halt), 1);
     EXPECT_EQ(static_cast<int>(Action::suspend), 2);
     EXPECT_EQ(static_cast<int>(Action::keep_going), 3);
+}
+
+TEST_F(NamesOfEnumerations, OfReasonsAreThoseOfTheNodeSet) {
+    const auto published =
+        namesAt(nodesets::device::kSkillTransitionReason_EnumStrings, kDeviceUri);
+    ASSERT_EQ(published.size(), static_cast<std::size_t>(skill::Reason::limit_violated) + 1);
+    for (std::size_t number = 0; number < published.size(); ++number) {
+        EXPECT_EQ(toString(skill::Reason(number)), published[number]) << number;
+    }
+}
+
+TEST_F(NamesOfEnumerations, OfStatesAndTransitionsAreThoseOfProgramStateMachineType) {
+    const auto nameOf = [this](const opcua::NodeId& node) {
+        const auto name = client_->read(node, opcua::AttributeId::browse_name);
+        return name ? name->as<opcua::QualifiedName>()->name : name.error().message;
+    };
+    for (const auto state : {skill::State::halted, skill::State::ready, skill::State::running,
+                             skill::State::suspended}) {
+        EXPECT_EQ(nameOf(stateId(state)), toString(state));
+    }
+    for (std::uint32_t number = 1; number <= 9; ++number) {
+        const auto transition = static_cast<skill::TransitionNumber>(number);
+        EXPECT_EQ(nameOf(transitionId(transition)), toString(transition));
+    }
 }
 
 }  // namespace

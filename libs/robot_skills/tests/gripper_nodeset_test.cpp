@@ -6,6 +6,7 @@
 #include "metier/opcua/client.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
+#include "metier/robot_skills/move_parameters.hpp"
 #include "metier/skill/control.hpp"
 
 namespace metier::robot_skills {
@@ -63,6 +64,21 @@ protected:
 
 TEST_F(ServedGripper, HasANodeForEveryParameterAndResult) {
     bindAll();
+}
+
+TEST_F(ServedGripper, HasANodeSetWhoseRelativeModesAreThoseOfMoves) {
+    ASSERT_TRUE(server->start());
+    const auto client = opcua::Client::connect(server->endpointUrl()).value();
+    const NodeId enumeration(0, 29U);
+    const auto names = client->translate(
+        enumeration, {{index("urn:metier:skills"), "RelativeMode"}, {0, "EnumStrings"}});
+    ASSERT_TRUE(names) << names.error().message;
+    const auto published =
+        client->read(*names).value().as<std::vector<opcua::LocalizedText>>().value();
+    ASSERT_EQ(published.size(), 3U);
+    EXPECT_EQ(published.at(static_cast<std::size_t>(Relative::absolute)).text, "Absolute");
+    EXPECT_EQ(published.at(static_cast<std::size_t>(Relative::base)).text, "Base");
+    EXPECT_EQ(published.at(static_cast<std::size_t>(Relative::tool)).text, "Tool");
 }
 
 TEST_F(ServedGripper, IsControlledByLeaseAndLock) {

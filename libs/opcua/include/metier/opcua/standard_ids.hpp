@@ -47,6 +47,8 @@ inline const NodeId kHasInterface{0, 17603U};
 inline const NodeId kBaseObjectType{0, 58U};
 inline const NodeId kFolderType{0, 61U};
 inline const NodeId kBaseDataVariableType{0, 63U};
+/// Type of Variables with a range; their units are of subtypes.
+inline const NodeId kBaseAnalogType{0, 15318U};
 inline const NodeId kPropertyType{0, 68U};
 inline const NodeId kBaseEventType{0, 2041U};
 inline const NodeId kProgramStateMachineType{0, 2391U};
@@ -72,6 +74,8 @@ inline const NodeId kAuditUpdateMethodEventType{0, 2127U};
 
 // Objects and Variables that every server has.
 inline const NodeId kObjectsFolder{0, 85U};
+/// URIs of the namespaces, in the order of their indices.
+inline const NodeId kNamespaceArray{0, 2255U};
 /// Root of all notifiers: a subscriber of its events gets those of every notifier below.
 inline const NodeId kServer{0, 2253U};
 /// Property of the Server: always true for a server of this library.

@@ -42,36 +42,36 @@ enum class TransitionNumber : std::uint32_t {
 /// Methods of a Program (OPC 10000-10), and StartWith of metier: a Start with its parameters.
 enum class Method : std::uint8_t { start, suspend, resume, halt, reset, start_with };
 
-/// Action of an execution when the client that owns it is gone.
+/// Action of an execution when the client that owns it is gone; OwnerLossAction of the NodeSet.
 enum class OwnerLossAction : std::uint8_t {
     /// As the skill's description says.
-    skill_default,
+    skill_default = 0,
     /// Brake, then Halted.
-    halt,
+    halt = 1,
     /// Brake on the path, then Suspended; Halt if the skill cannot be suspended.
-    suspend,
+    suspend = 2,
     /// Go on to the end; shown to clients as "Continue".
-    keep_going,
+    keep_going = 3,
 };
 
-/// Cause of a transition; shown to clients in its event.
+/// Cause of a transition; shown to clients in its event; SkillTransitionReason of the NodeSet.
 enum class Reason : std::uint8_t {
     /// No transition yet.
-    none,
+    none = 0,
     /// The skill has reached its end: the result is complete.
-    finished,
+    finished = 1,
     /// A Method of a client.
-    by_client,
+    by_client = 2,
     /// A fault of the device or the skill; the reason's text has it.
-    error,
+    error = 3,
     /// A contact force over its limit.
-    force_exceeded,
+    force_exceeded = 4,
     /// The session of the owner has ended, or its lease has run out.
-    owner_lost,
+    owner_lost = 5,
     /// The connection to the device is lost, or to the server of a part.
-    device_lost,
+    device_lost = 6,
     /// A limit of the device was exceeded, such as a set-point beyond it.
-    limit_violated,
+    limit_violated = 7,
 };
 
 /// The sub-state within the current state; the sub-states of the other states are
