@@ -33,7 +33,7 @@ void RecordingSwitch::turn(bool on) const {
     }
 }
 
-RecordingSwitch::Serving::Serving(int socket, Turn turn)
+RecordingSwitch::Serving::Serving(int socket, Switch turn)
     : socket_(socket), thread_([socket, turn = std::move(turn)] {
           char wanted = 0;
           while (read(socket, &wanted, 1) == 1) {

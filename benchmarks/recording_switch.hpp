@@ -23,11 +23,11 @@ public:
 
     /// Called with the argument of turn(); it must call `done`. It runs in the server's process, on
     /// a thread that ends with the answer.
-    using Turn = std::function<void(bool on, std::function<void()> done)>;
+    using Switch = std::function<void(bool on, std::function<void()> done)>;
     class Serving {
     public:
         Serving() = default;
-        Serving(int socket, Turn turn);
+        Serving(int socket, Switch turn);
         ~Serving();
         Serving(Serving&& other) noexcept;
         Serving& operator=(Serving&& other) noexcept;
@@ -36,7 +36,7 @@ public:
         int socket_ = -1;
         std::jthread thread_;
     };
-    Serving serve(Turn turn) const { return {server_side_, std::move(turn)}; }
+    Serving serve(Switch turn) const { return {server_side_, std::move(turn)}; }
 
 private:
     const std::string file_;

@@ -69,7 +69,7 @@ class App {
     private seenOrNot(): void {
         clearTimeout(this.unseen);
         if (document.visibilityState === 'visible') {
-            // Servers may have come meanwhile. Should the dashboard be away, the stream tells.
+            // Servers may have come meanwhile. If the dashboard is away, the stream says so.
             if (this.stream?.resume() === true) this.loadCell().catch(() => undefined);
         } else this.unseen = window.setTimeout(() => this.rest(), kUnseen);
     }

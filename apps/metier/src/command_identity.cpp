@@ -142,7 +142,7 @@ std::string CommandIdentity::adviceOn(const opcua::Failure& refusal) const {
         return "; the server may be closed: leave out --insecure-lab";
     }
     if (refusal.status == opcua::status::kBadCertificateUntrusted) {
-        return "; metier trust list tells whether to accept it";
+        return "; metier trust list says whether to accept it";
     }
     return {};
 }

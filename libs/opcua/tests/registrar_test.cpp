@@ -21,14 +21,14 @@ SteadyTime soon() {
 }
 
 /// A discovery server whose answers are the test's.
-class Desk {
+class AnsweringServer {
 public:
     struct Call {
         ServerRegistration::Presence presence;
         std::chrono::milliseconds timeout;
     };
 
-    Registrar::Register door() {
+    Registrar::Register registration() {
         return [this](const std::string& /*url*/, const ServerRegistration& server,
                       std::chrono::milliseconds timeout) {
             calls.tryPush({server.presence, timeout});
@@ -50,10 +50,10 @@ RegistrarOptions options() {
 }
 
 TEST(Registrar, RegistersAtOnceAndAgain) {
-    Desk desk;
-    const Registrar registrar(options(), desk.door());
+    AnsweringServer server;
+    const Registrar registrar(options(), server.registration());
     for (int time = 0; time < 3; ++time) {
-        const auto call = desk.calls.popUntil(soon());
+        const auto call = server.calls.popUntil(soon());
         ASSERT_TRUE(call);
         EXPECT_EQ(call->presence, ServerRegistration::Presence::online);
         EXPECT_EQ(call->timeout, 200ms);
@@ -61,45 +61,45 @@ TEST(Registrar, RegistersAtOnceAndAgain) {
 }
 
 TEST(Registrar, TakesTheServerOutAtItsEnd) {
-    Desk desk;
+    AnsweringServer server;
     auto slow = options();
     slow.period = 1h;
     {
-        const Registrar registrar(slow, desk.door());
-        ASSERT_TRUE(desk.calls.popUntil(soon()));
+        const Registrar registrar(slow, server.registration());
+        ASSERT_TRUE(server.calls.popUntil(soon()));
     }
-    const auto last = desk.calls.popUntil(soon());
+    const auto last = server.calls.popUntil(soon());
     ASSERT_TRUE(last) << "the end does not wait for the next period";
     EXPECT_EQ(last->presence, ServerRegistration::Presence::offline);
     EXPECT_EQ(last->timeout, 70ms);
 }
 
 TEST(Registrar, AsksAgainUntilTheDiscoveryServerIsBack) {
-    Desk desk;
-    desk.open = false;
+    AnsweringServer server;
+    server.open = false;
     {
-        const Registrar registrar(options(), desk.door());
-        ASSERT_TRUE(desk.calls.popUntil(soon()));
-        desk.open = true;
-        while (desk.calls.popUntil(SteadyTime{})) {  // those that came before
+        const Registrar registrar(options(), server.registration());
+        ASSERT_TRUE(server.calls.popUntil(soon()));
+        server.open = true;
+        while (server.calls.popUntil(SteadyTime{})) {  // those that came before
         }
-        ASSERT_TRUE(desk.calls.popUntil(soon())) << "once it was back";
+        ASSERT_TRUE(server.calls.popUntil(soon())) << "once it was back";
     }
     auto last = ServerRegistration::Presence::online;
-    while (const auto call = desk.calls.popUntil(SteadyTime{})) {
+    while (const auto call = server.calls.popUntil(SteadyTime{})) {
         last = call->presence;
     }
     EXPECT_EQ(last, ServerRegistration::Presence::offline) << "who takes itself out was in";
 }
 
 TEST(Registrar, DoesNotSayFarewellToAServerThatDidNotAnswer) {
-    Desk desk;
-    desk.open = false;
+    AnsweringServer server;
+    server.open = false;
     {
-        const Registrar registrar(options(), desk.door());
-        ASSERT_TRUE(desk.calls.popUntil(soon()));
+        const Registrar registrar(options(), server.registration());
+        ASSERT_TRUE(server.calls.popUntil(soon()));
     }
-    while (const auto call = desk.calls.popUntil(SteadyTime{})) {
+    while (const auto call = server.calls.popUntil(SteadyTime{})) {
         EXPECT_EQ(call->presence, ServerRegistration::Presence::online);
     }
 }

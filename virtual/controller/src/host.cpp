@@ -128,7 +128,7 @@ std::vector<InjectionHelp> Host::injections() {
         };
     }
     const std::vector<InjectionHelp> common{
-        {"cut-link", "Nothing comes through any port, and no peer is told",
+        {"cut-link", "Nothing comes through any port, and no peer is informed",
          always([this] { faults_.cut = true; })},
         {"restore-link", "Ends cut-link, delay and garble", always([this] {
              faults_.cut = false;

@@ -33,7 +33,7 @@ motion::Pose interpolate(const motion::Pose& from, const motion::Pose& to, doubl
 
 }  // namespace
 
-struct MovePlanner::Way {
+struct MovePlanner::ToolPath {
     double length = 0.0;                     // [m]
     double angle = 0.0;                      // [rad]
     std::function<motion::Pose(double)> at;  // flange, from 0 to 1
@@ -152,7 +152,7 @@ virtual_controller::Trapezoid MovePlanner::profileFor(const std::vector<AxisValu
 }
 
 Result<Segment> MovePlanner::follow(const AxisValues& start, const AxisValues& target,
-                                    const Way& way) const {
+                                    const ToolPath& way) const {
     const auto steps = static_cast<std::size_t>(
         std::ceil(std::max({way.length / kStep, way.angle / kAngleStep, 1.0})));
     std::vector<AxisValues> path{start};

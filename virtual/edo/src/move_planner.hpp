@@ -38,7 +38,7 @@ public:
     const AxisLimits& limits() const { return limits_; }
 
 private:
-    struct Way;  // way of the tool frame
+    struct ToolPath;  // path of the tool frame
 
     Result<AxisValues> jointTarget(const AxisValues& start, std::size_t axes,
                                    const Point& point) const;
@@ -48,7 +48,8 @@ private:
                              const motion::Pose& goal) const;
     Result<Segment> planArc(const AxisValues& start, const AxisValues& via,
                             const AxisValues& target) const;
-    Result<Segment> follow(const AxisValues& start, const AxisValues& target, const Way& way) const;
+    Result<Segment> follow(const AxisValues& start, const AxisValues& target,
+                           const ToolPath& way) const;
     Result<Segment> planJoints(const AxisValues& start, const AxisValues& target) const;
     AxisValues jogTarget(const AxisValues& start, std::size_t axes, const Point& point);
     Result<Segment> planLinearJog(const AxisValues& start, const CartesianPose& direction);

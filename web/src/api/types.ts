@@ -1,4 +1,4 @@
-// What the dashboard's server tells, as JSON. Units are SI, angles in rad, times in s since 1970 UTC.
+// Messages of the dashboard's server, as JSON. Units are SI, angles in rad, times in s since 1970 UTC.
 
 /** x, y, z [m], then a, b, c [rad] about x, y, z: R = Rz(c) Ry(b) Rx(a). */
 export type Frame = readonly [number, number, number, number, number, number];

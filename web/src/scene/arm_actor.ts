@@ -1,4 +1,4 @@
-// One arm on the stage: itself, its gripper, its tool frame, its trace, and the ghosts of what it is told.
+// One arm on the stage: itself, its gripper, its tool frame, its trace, and the ghosts of its commanded poses.
 
 import { Group, Vector3, type Object3D } from 'three';
 import type { Arm, Frame, Server, Vector3 as Vector } from '../api/types.js';
@@ -13,7 +13,7 @@ import { triad } from './triad.js';
 
 /** From where on commanded and actual are seen as different [rad]. */
 const kApart = 0.02;
-/** Of a gripper that does not tell its largest width [m]. */
+/** Opening of a gripper whose largest width is not published [m]. */
 const kStroke = 0.11;
 const kLargestStroke = 0.3;
 /** A part that is held is so near to the jaws [m]. */
@@ -121,7 +121,7 @@ export class ArmActor {
         return apart || was;
     }
 
-    /** Whose gripper tells that it holds a part but not how wide it is: the width is that of the nearest part [m]. */
+    /** Arms whose gripper reports that it holds a part but not how wide it is: the width is that of the nearest part [m]. */
     holdNearest(parts: Iterable<{ object: Object3D; width: number }>): void {
         if (this.jaws === null || this.live.widths.has(this.jaws.key)) return;
         const jaws = this.jaws.view.root.getWorldPosition(new Vector3());

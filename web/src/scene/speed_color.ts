@@ -2,7 +2,7 @@
 
 export type Rgb = readonly [number, number, number];
 
-/** Slow to fast; told apart on light and dark ground and with the common colour blindnesses by lightness. */
+/** Slow to fast; distinguished on light and dark ground and with the common colour blindnesses by lightness. */
 const kStops: readonly Rgb[] = [
     [0.23, 0.36, 0.8],
     [0.1, 0.6, 0.72],

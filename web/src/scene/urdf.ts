@@ -1,5 +1,5 @@
 // Reads a URDF and puts its visual meshes on the links of an arm. The server's kinematics move it, not the file's:
-// the file's chain only tells where each mesh is on its link.
+// the file's chain only says where each mesh is on its link.
 
 import { Color, Group, Matrix4, Mesh, MeshStandardMaterial, type Object3D } from 'three';
 import { ColladaLoader } from 'three/examples/jsm/loaders/ColladaLoader.js';

@@ -9,7 +9,7 @@ function plain(text: string): string {
     return text.toLowerCase().replace(/[^a-z0-9]/g, '');
 }
 
-/** All files, first those whose path names the arm. Whether one fits is told by its chain. */
+/** All files, first those whose path names the arm. Its chain decides whether one fits. */
 export function inOrder(files: readonly string[], arm: Arm): string[] {
     const words = [arm.product, arm.name, arm.key].map(plain).filter((word) => word.length > 1);
     const names = (file: string): boolean => words.some((word) => plain(file).includes(word));

@@ -1,4 +1,4 @@
-// A value that tells its listeners when it changes. Listeners are called once per frame at most.
+// A value with listeners for its changes. Listeners are called once per frame at most.
 
 export type Listener<T> = (value: T) => void;
 

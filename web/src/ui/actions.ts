@@ -64,7 +64,7 @@ export class Actions {
         return this.attempt(`${kWords[command]} ${skill.display_name}`, () => this.api.skill(this.tab, skill.key, command));
     }
 
-    /** Halts what is named, or all. Who could not be halted is told by name: a person must know. */
+    /** Halts what is named, or all. What could not be halted is named: a person must know. */
     async halt(what: { server?: string; arm?: string }, name: string): Promise<void> {
         try {
             const answer = await this.api.halt(what);

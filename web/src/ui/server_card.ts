@@ -83,7 +83,7 @@ export class ServerCard {
     renderLease(state: CellState): void {
         const control = this.controlEvent(state);
         const left = control === null ? null : leaseLeft(control, state.clock_offset, wallTime());
-        // Between two renewals that are told, the whole lease is what is known.
+        // Between two renewals that are reported, the whole lease is what is known.
         const shown = left === 0 ? (control?.lease_ms ?? 0) / 1000 : left;
         setText(this.lease, shown === null || shown === 0 ? '' : `${shown.toFixed(1)} s`);
         this.lease.title = 'Until its lease runs out, if it is not renewed';

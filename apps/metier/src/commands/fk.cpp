@@ -43,7 +43,7 @@ void addFk(CLI::App& app, CommandContext& context) {
     auto* command =
         app.add_subcommand("fk", "Forward kinematics: the pose of the flange in the base frame");
     command->footer(
-        "Rotations a, b, c are about x, y, z: R = Rz(c) Ry(b) Rx(a). The joint limits are told, "
+        "Rotations a, b, c are about x, y, z: R = Rz(c) Ry(b) Rx(a). The joint limits are printed, "
         "not\n"
         "applied.");
     addRobot(*command, options->robot);

@@ -256,7 +256,7 @@ void addPickPlace(CLI::App& app, CommandContext& context) {
     auto* command = app.add_subcommand(
         "pick-place", "Have every PickPlaceSkill of some servers move a row of parts");
     command->footer(
-        "A part that fails is told with the reason; the skill is Reset and takes the next.\n"
+        "A part that fails is reported with the reason; the skill is Reset and takes the next.\n"
         "A skill that somebody else halts is left alone, with the parts that remain.\n"
         "Exit status 1 if a part was not placed.");
     addServerChoice(*command, options->servers);

@@ -169,7 +169,7 @@ void addTrust(CLI::App& app, CommandContext& context) {
         ->required();
     add("renew", "Give an application of this folder a new key and certificate; it need not stop",
         &renew)
-        ->add_option("name", options->what, "Its name, as `metier trust list` tells it")
+        ->add_option("name", options->what, "Its name, as `metier trust list` shows it")
         ->required();
 }
 

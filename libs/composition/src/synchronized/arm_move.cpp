@@ -86,21 +86,22 @@ std::optional<ArmFailure> ArmMove::checkPossible(const Result<CheckReport>& repo
                                    halted ? " (" + why + ")" : ""));
     }
     if (report->joint_path.empty()) {
-        return failure("does not tell the joints on its way");
+        return failure("does not publish the joint positions on its way");
     }
     return std::nullopt;
 }
 
 void ArmMove::compareClocks(Done done) {
-    setup_.arm.joint_move->compareClocks([this, done = std::move(done)](
-                                             const Result<ClockOffset>& offset) {
-        if (!offset) {
-            done(failure("does not tell its time: " + offset.error().message, Reason::device_lost));
-            return;
-        }
-        offset_ = *offset;
-        done(std::nullopt);
-    });
+    setup_.arm.joint_move->compareClocks(
+        [this, done = std::move(done)](const Result<ClockOffset>& offset) {
+            if (!offset) {
+                done(failure("does not publish its time: " + offset.error().message,
+                             Reason::device_lost));
+                return;
+            }
+            offset_ = *offset;
+            done(std::nullopt);
+        });
 }
 
 /// If a motion is slowed down by a factor, it brakes from a speed that is less by that factor: the

@@ -26,9 +26,9 @@ OpenRequest request(const motion::RobotModel* model,
 }
 
 /// Turns axis 1 within so many cycles, from rest to rest.
-class Turn final : public SetPointSource {
+class TurningSource final : public SetPointSource {
 public:
-    explicit Turn(int cycles) : left_(cycles) {}
+    explicit TurningSource(int cycles) : left_(cycles) {}
     Next next(const ArmState& /*state*/, JointArray& set_point) noexcept override {
         if (left_ == 0) {
             return Next::done;
@@ -67,7 +67,7 @@ TEST(SimulatorDriver, OpensAnArmOfTheModelAndNothingElse) {
 
 TEST(SimulatorDriver, MovesItsArmByItself) {
     const auto device = simulatorDriver().open(request(&kUr5)).value();
-    const auto turn = std::make_shared<Turn>(50);
+    const auto turn = std::make_shared<TurningSource>(50);
     auto end = turn->end();
     ASSERT_TRUE(device.arm->attach(turn));
     ASSERT_EQ(end.wait_for(30s), std::future_status::ready);
@@ -77,7 +77,7 @@ TEST(SimulatorDriver, MovesItsArmByItself) {
 
 TEST(SimulatorDriver, EndsAMotionWhenItsOwnerLetsGo) {
     auto device = simulatorDriver().open(request(&kUr5)).value();
-    const auto turn = std::make_shared<Turn>(100'000);
+    const auto turn = std::make_shared<TurningSource>(100'000);
     auto end = turn->end();
     ASSERT_TRUE(device.arm->attach(turn));
     device.owner.reset();
@@ -88,7 +88,7 @@ TEST(SimulatorDriver, EndsAMotionWhenItsOwnerLetsGo) {
 TEST(SimulatorDriver, OpensSeveralArmsSideBySide) {
     const auto left = simulatorDriver().open(request(&kUr5)).value();
     const auto right = simulatorDriver().open(request(&kUr5)).value();
-    const auto turn = std::make_shared<Turn>(50);
+    const auto turn = std::make_shared<TurningSource>(50);
     auto end = turn->end();
     ASSERT_TRUE(left.arm->attach(turn));
     ASSERT_EQ(end.wait_for(30s), std::future_status::ready);

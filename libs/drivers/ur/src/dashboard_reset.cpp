@@ -1,4 +1,4 @@
-#include "recovery.hpp"
+#include "dashboard_reset.hpp"
 
 #include <fmt/format.h>
 
@@ -29,18 +29,18 @@ bool isSafe(const ControllerState& state) {
 
 }  // namespace
 
-Recovery::Recovery(Peer peer, const UrSettings& settings, std::function<Observation()> newest,
-                   SafetyReporter& reporter)
+DashboardReset::DashboardReset(Peer peer, const UrSettings& settings,
+                               std::function<Observation()> newest, SafetyReporter& reporter)
     : peer_(std::move(peer)),
       settings_(settings),
       newest_(std::move(newest)),
       reporter_(reporter) {}
 
-tl::unexpected<Error> Recovery::refuse(const std::string& why) const {
+tl::unexpected<Error> DashboardReset::refuse(const std::string& why) const {
     return fail(Errc::device_fault, peer_.name + ": " + why);
 }
 
-Result<dashboard::Client> Recovery::dial() const {
+Result<dashboard::Client> DashboardReset::dial() const {
     auto client =
         dashboard::Client::connect(peer_.host, settings_.dashboard_port, commandDeadline());
     if (!client) {
@@ -49,13 +49,13 @@ Result<dashboard::Client> Recovery::dial() const {
     return client;
 }
 
-Result<void> Recovery::command(dashboard::Client& client, std::string_view text,
-                               std::string_view expected) const {
+Result<void> DashboardReset::command(dashboard::Client& client, std::string_view text,
+                                     std::string_view expected) const {
     const auto done = client.command(text, expected, commandDeadline());
     return done ? done : refuse(done.error().message);
 }
 
-Result<void> Recovery::run(const std::stop_token& stop) {
+Result<void> DashboardReset::run(const std::stop_token& stop) {
     const auto now = newest_();
     if (!now.connected) {
         return fail(Errc::connection_lost, peer_.name + ": no connection to the controller");
@@ -73,7 +73,7 @@ Result<void> Recovery::run(const std::stop_token& stop) {
         });
 }
 
-Result<void> Recovery::leaveSafetyStop(const std::stop_token& stop) {
+Result<void> DashboardReset::leaveSafetyStop(const std::stop_token& stop) {
     const auto state = newest_().state;
     if (isSafe(state)) {
         return {};
@@ -84,7 +84,7 @@ Result<void> Recovery::leaveSafetyStop(const std::stop_token& stop) {
     return refuse(judge(state.robot_mode, state.safety_mode).text);
 }
 
-Result<void> Recovery::unlock(const std::stop_token& stop) {
+Result<void> DashboardReset::unlock(const std::stop_token& stop) {
     const auto left = reporter_.since() + settings_.unlock_delay - std::chrono::steady_clock::now();
     if (left > 0ns) {
         return refuse(fmt::format("the protective stop can be unlocked in {:.1f} s",
@@ -98,7 +98,7 @@ Result<void> Recovery::unlock(const std::stop_token& stop) {
     return await(isSafe, kUnlockTimeout, "the protective stop was not released", stop);
 }
 
-Result<void> Recovery::powerOn(const std::stop_token& stop) {
+Result<void> DashboardReset::powerOn(const std::stop_token& stop) {
     const auto mode = newest_().state.robot_mode;
     if (mode == RobotMode::running) {
         return {};
@@ -129,7 +129,7 @@ Result<void> Recovery::powerOn(const std::stop_token& stop) {
                  kPowerTimeout, "the brakes were not released", stop);
 }
 
-Result<void> Recovery::endPausedProgram(const std::stop_token& stop) {
+Result<void> DashboardReset::endPausedProgram(const std::stop_token& stop) {
     if (newest_().state.runtime_state != RuntimeState::paused) {
         return {};
     }
@@ -139,12 +139,12 @@ Result<void> Recovery::endPausedProgram(const std::stop_token& stop) {
         kStopTimeout, "the paused program was not stopped", stop);
 }
 
-Result<void> Recovery::stopProgram() {
+Result<void> DashboardReset::stopProgram() {
     METIER_ASSIGN(auto client, dial());
     return command(client, "stop", "Stopped");
 }
 
-Result<void> Recovery::checkSlider() const {
+Result<void> DashboardReset::checkSlider() const {
     const double fraction = newest_().state.target_speed_fraction;
     if (reporter_.latched() && fraction < kFullSpeed) {
         return refuse(
@@ -153,9 +153,9 @@ Result<void> Recovery::checkSlider() const {
     return {};
 }
 
-Result<void> Recovery::await(const std::function<bool(const ControllerState&)>& reached,
-                             std::chrono::nanoseconds time, const std::string& what,
-                             const std::stop_token& stop) const {
+Result<void> DashboardReset::await(const std::function<bool(const ControllerState&)>& reached,
+                                   std::chrono::nanoseconds time, const std::string& what,
+                                   const std::stop_token& stop) const {
     const auto deadline = std::chrono::steady_clock::now() + time;
     while (!stop.stop_requested()) {
         const auto now = newest_();

@@ -23,7 +23,7 @@ struct Observation {
 /// Takes the steps at the dashboard that need no person, so that the arm may move again.
 ///
 /// Threading: one thread; calls wait for as long as the controller needs.
-class Recovery {
+class DashboardReset {
 public:
     struct Peer {
         std::string name;  ///< name of the device
@@ -31,8 +31,8 @@ public:
     };
 
     /// \param newest any thread; does not wait
-    Recovery(Peer peer, const UrSettings& settings, std::function<Observation()> newest,
-             SafetyReporter& reporter);
+    DashboardReset(Peer peer, const UrSettings& settings, std::function<Observation()> newest,
+                   SafetyReporter& reporter);
 
     /// Unlocks a protective stop, closes popups, ends a paused program, powers on if the settings
     /// allow it, and forgets why the driver stopped.

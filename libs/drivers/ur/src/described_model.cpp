@@ -81,7 +81,7 @@ Result<RobotModel> describedModel(const RobotModel& file,
     auto model = file.withChain(std::move(chain));
     if (!model) {
         return fail(Errc::invalid_argument,
-                    "what the controller tells of its arm: " + model.error().message);
+                    "what the controller reports of its arm: " + model.error().message);
     }
     if (const double distance = flangeDistance(file, *model); !(distance < kOtherArm)) {
         return fail(Errc::invalid_argument,

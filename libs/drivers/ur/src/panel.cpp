@@ -22,11 +22,11 @@ constexpr auto kSlice = 5ms;  // time after which a new job or the end is notice
 
 }  // namespace
 
-Panel::Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings)
+Panel::Panel(Parts parts, DashboardReset::Peer peer, const UrSettings& settings)
     : parts_(std::move(parts)),
       peer_(std::move(peer)),
       settings_(settings),
-      recovery_(peer_, settings, parts_.newest, parts_.reporter),
+      dashboard_reset_(peer_, settings, parts_.newest, parts_.reporter),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void Panel::run(const std::stop_token& stop) {
@@ -36,7 +36,7 @@ void Panel::run(const std::stop_token& stop) {
             handle(*job);
         }
         if (parts_.resets.taken()) {
-            parts_.resets.answer(recovery_.run(stop));
+            parts_.resets.answer(dashboard_reset_.run(stop));
         }
         drain();
     }
@@ -53,7 +53,7 @@ void Panel::handle(const PanelJob& job) {
             }
             break;
         case PanelJob::Kind::stop_program:
-            if (const auto stopped = recovery_.stopProgram(); !stopped) {
+            if (const auto stopped = dashboard_reset_.stopProgram(); !stopped) {
                 spdlog::warn("{}", stopped.error().message);
             }
             break;

@@ -5,10 +5,10 @@
 #include <optional>
 #include <thread>
 
+#include "dashboard_reset.hpp"
 #include "metier/base/queue.hpp"
 #include "metier/device/reset_slot.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "recovery.hpp"
 #include "servoj_script.hpp"
 #include "streamer.hpp"
 
@@ -37,7 +37,7 @@ public:
         std::function<Observation()> newest;
     };
 
-    Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings);
+    Panel(Parts parts, DashboardReset::Peer peer, const UrSettings& settings);
 
 private:
     void run(const std::stop_token& stop);
@@ -47,9 +47,9 @@ private:
     void drain();
 
     const Parts parts_;
-    const Recovery::Peer peer_;
+    const DashboardReset::Peer peer_;
     const UrSettings settings_;
-    Recovery recovery_;
+    DashboardReset dashboard_reset_;
     /// Kept open and read for a while: a close with unread bytes could discard the script.
     std::optional<link::TcpLink> script_link_;
     SteadyTime close_script_link_{};

@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 
+#include "dashboard_reset.hpp"
 #include "metier/device/arm_core.hpp"
 #include "metier/device/notifier.hpp"
 #include "metier/device/reset_slot.hpp"
@@ -12,7 +13,6 @@
 #include "metier/motion/robot_model.hpp"
 #include "panel.hpp"
 #include "primary_session.hpp"
-#include "recovery.hpp"
 #include "rtde_session.hpp"
 #include "safety_reporter.hpp"
 #include "streamer.hpp"

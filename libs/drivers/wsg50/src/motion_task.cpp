@@ -243,14 +243,16 @@ MotionTask::Outcome MotionTask::judgeMismatch(const Observation& seen) const {
         return judgeFailure(seen);
     }
     if (motion_.kind == MotionKind::move) {
-        return fail(Errc::device_fault,
-                    fmt::format("the gripper told success, but the jaws are at {:.1f} mm instead "
-                                "of {:.1f} mm",
-                                width_mm, motion_.width / kMillimetre));
+        return fail(
+            Errc::device_fault,
+            fmt::format("the gripper reported success, but the jaws are at {:.1f} mm instead "
+                        "of {:.1f} mm",
+                        width_mm, motion_.width / kMillimetre));
     }
-    return fail(Errc::device_fault,
-                fmt::format("the gripper told success of {}, but its state is '{}' at {:.1f} mm",
-                            nameOf(motion_.kind), toString(seen.grasping()), width_mm));
+    return fail(
+        Errc::device_fault,
+        fmt::format("the gripper reported success of {}, but its state is '{}' at {:.1f} mm",
+                    nameOf(motion_.kind), toString(seen.grasping()), width_mm));
 }
 
 }  // namespace metier::wsg50_driver

@@ -80,7 +80,8 @@ TEST_F(MotionOf, GraspWhoseStateNeverAgreesFails) {
     underWay(kGrasp, 0x25);
     talk.hear(reply(0x25, kSuccess));
     talk.pass(300ms, kReferenced, kIdle, 30);
-    EXPECT_THAT(talk.motionError(), HasSubstr("told success of grasp, but its state is 'idle'"));
+    EXPECT_THAT(talk.motionError(),
+                HasSubstr("reported success of grasp, but its state is 'idle'"));
 }
 
 TEST_F(MotionOf, GraspTellsThatThePartWasLostOnTheWay) {

@@ -58,7 +58,7 @@ void Registrar::leave() {
     auto server = options_.server;
     server.presence = opcua::ServerRegistration::Presence::offline;
     if (const auto told = register_(options_.discovery_url, server, options_.farewell); !told) {
-        spdlog::info("{} was not told of the end: {}", options_.discovery_url,
+        spdlog::info("{} could not be informed of the end: {}", options_.discovery_url,
                      opcua::sanitise(told.error().message));
     }
 }

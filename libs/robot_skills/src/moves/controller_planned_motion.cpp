@@ -187,8 +187,8 @@ Result<ControllerPlannedMotion> controllerPlannedMotion(const ControllerPlannedR
     const auto fastest = fastestAxis(request, path_speed);
     // Without any way there is no speed.
     if (fastest.absolute > 0.0 && fastest.absolute < kSlowest) {
-        return notByController(
-            fmt::format("{:.5f} rad/s is too slow to tell from standstill", fastest.absolute));
+        return notByController(fmt::format(
+            "{:.5f} rad/s is too slow to be distinguished from standstill", fastest.absolute));
     }
     Result<ControllerPlannedMotion> motion;
     if (request.path == PathDeviationMeter::Path::joint_line) {

@@ -103,7 +103,7 @@ struct VariableSpec {
 struct CallContext {
     /// Session of the caller; valid during the call.
     const Session& session;
-    /// Object on which the Method is called; tells apart those that share a Method node.
+    /// Object on which the Method is called; distinguishes those that share a Method node.
     NodeId object;
     /// Method node that was called.
     NodeId method;
