@@ -33,7 +33,7 @@ async function worked(session) {
     return { all: of('TaskDuration'), scripts: of('ScriptDuration'), time: of('Timestamp') };
 }
 
-/** Counts what is drawn from now on; a frame has as many draw calls as WebGL is told of between two frames. */
+/** Counts what is drawn from now on; a frame has as many draw calls as WebGL gets between two frames. */
 function count() {
     const { renderer } = window.metier.stage.viewer;
     const counted = { frames: 0, calls: 0, triangles: 0 };

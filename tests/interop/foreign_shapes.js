@@ -13,6 +13,7 @@ const kMethods = ['Start', 'Suspend', 'Resume', 'Halt', 'Reset'];
  * @property {boolean} numbers whether its state has a number; its events have none in namespace 0
  * @property {boolean} ids whether states and transitions have NodeIds
  * @property {number} [namespace] of the methods' BrowseNames; default: 0
+ * @property {number} [rank] that its fields declare as ValueRank; default: -1, scalar
  * @property {number} [lasts] [s] its fixed duration: it has no parameters, no results, and no
  *     LastTransition
  */
@@ -27,6 +28,10 @@ const kShapes = [
   {
     name: 'OwnMethods', methods: kMethods, event: 'TransitionEventType', numbers: false, ids: true,
     namespace: 1,
+  },
+  {
+    name: 'WrongRanks', methods: kMethods, event: 'TransitionEventType', numbers: false, ids: true,
+    rank: -2,
   },
   { name: 'Bare', methods: kMethods, event: null, numbers: false, ids: true, lasts: 5 },
   { name: 'StartAndHalt', methods: ['Start', 'Halt'], event: 'TransitionEventType', numbers: false, ids: true },

@@ -5,7 +5,7 @@
 
 console.log = console.error;  // what node-opcua says; the standard output is for "ready URL"
 const {
-  DataType, OPCUAServer, StatusCodes, coerceNodeId, coerceQualifiedName,
+  DataType, OPCUAServer, StatusCodes, VariantArrayType, coerceNodeId, coerceQualifiedName,
 } = require('node-opcua');
 const { kShapes } = require('./foreign_shapes');
 const { freePort } = require('./free_port');
@@ -23,6 +23,8 @@ const kTransitions = {
   SuspendedToReady: { id: 2422, number: 8 },
   ReadyToHalted: { id: 2424, number: 9 },
 };
+
+const kPattern = new Float64Array([0.5, 0.25]);
 
 const nodeId = (id) => ({ dataType: DataType.NodeId, value: coerceNodeId(`ns=0;i=${id}`) });
 const number = (value) => ({ dataType: DataType.UInt32, value });
@@ -63,6 +65,10 @@ class ForeignProgram {
     this.level = this.addField('ParameterSet', 'Level', DataType.Float, 0.5);
     this.result = this.addField('FinalResultData', 'Count', DataType.UInt32, 0);
     this.note = this.addField('FinalResultData', 'Note', DataType.LocalizedText, { text: '' });
+    if (this.shape.rank) {
+      this.pattern = this.addField('ParameterSet', 'Pattern', DataType.Double, kPattern, VariantArrayType.Array);
+      this.echo = this.addField('FinalResultData', 'Echo', DataType.Double, kPattern, VariantArrayType.Array);
+    }
   }
 
   addStateVariable(name, type) {
@@ -86,7 +92,7 @@ class ForeignProgram {
     };
   }
 
-  addField(folder, name, dataType, value) {
+  addField(folder, name, dataType, value, arrayType = VariantArrayType.Scalar) {
     const namespace = this.space.getOwnNamespace();
     const parent =
       this.object.getComponentByName(folder) ??
@@ -95,8 +101,9 @@ class ForeignProgram {
       browseName: name,
       componentOf: parent,
       dataType,
+      valueRank: this.shape.rank ?? -1,
       minimumSamplingInterval: 10,
-      value: { dataType, value },
+      value: { dataType, arrayType, value },
     });
   }
 
@@ -138,6 +145,7 @@ class ForeignProgram {
     }
     this.count += 1;
     this.result?.setValueFromSource({ dataType: DataType.UInt32, value: this.count });
+    this.echo?.setValueFromSource(this.pattern.readValue().value);
     this.note?.setValueFromSource(text(`level ${this.level.readValue().value.value}`));
     this.go('Ready', 'done');
   }

@@ -13,12 +13,17 @@ const { awaitState, runMetier, startMetier, startProcess } = require('./metier_p
 const kProgram = path.join(__dirname, 'foreign_skills.js');
 const kLostConnection = 3;
 let server;
+let other;  // whose skills may be left Halted
 
 before(async () => {
   server = await startProcess(process.execPath, [kProgram]);
+  other = await startProcess(process.execPath, [kProgram]);
 });
 
-after(() => server?.stop());
+after(async () => {
+  await server?.stop();
+  await other?.stop();
+});
 
 const run = (skill, ...more) => runMetier(['run', server.url, skill, ...more]);
 
@@ -126,6 +131,30 @@ test('Ctrl-C of run halts a skill, and halt finds it Halted', async () => {
   }
 });
 
+for (const { name, methods } of kShapes) {
+  test(`${name} is watched, halted while it runs, and reset`, async () => {
+    const watching = await startMetier(['watch', other.url, name, '--count', '2'], /watching/);
+    const done = await runMetier(['run', other.url, name, ...setLasting(name, 0.3)]);
+    assert.strictEqual(done.status, 0, done.errors);
+    assert.match((await watching.end).output, /Ready -> Running.*Running -> Ready/s);
+    const running = runMetier(['run', other.url, name, ...setLasting(name, 10)]);
+    await awaitState(other.url, name, 'Running');
+    const halted = await runMetier(['halt', other.url, '--skill', name]);
+    assert.strictEqual(halted.status === 0, methods.includes('Halt'), halted.errors);
+    assert.strictEqual((await running).status === 0, !methods.includes('Halt'));
+    if (methods.includes('Reset')) {
+      assert.strictEqual((await runMetier(['reset', other.url, name])).status, 0);
+      await awaitState(other.url, name, 'Ready');
+    }
+  });
+}
+
+test('arrays are sent and read where any rank is declared', async () => {
+  const { status, output, errors } = await run('WrongRanks', '--set', 'Duration=0', '--set', 'Pattern=1,2,3', '--json');
+  assert.strictEqual(status, 0, errors);
+  assert.deepStrictEqual(JSON.parse(output).Echo, [1, 2, 3]);
+});
+
 test('what is not there to suspend or reset is named', async () => {
   for (const [command, method] of [['suspend', 'Suspend'], ['reset', 'Reset']]) {
     const refused = await runMetier([command, server.url, 'StartOnly']);
@@ -179,7 +208,9 @@ test('run and find say what another maker\'s skill cannot have', async () => {
   assert.strictEqual(status, 0, errors);
   assert.match(errors, /Whole has no atomic start \(another client may write .*\), no dead-man/);
   const found = await runMetier(['find', 'ProgramStateMachineType', '--at', server.url]);
-  assert.match(found.output, /Whole fits: .*, no atomic start, no dead-man/);
+  for (const { name } of kShapes) {
+    assert.match(found.output, new RegExp(`${name} fits: .*, no atomic start, no dead-man`));
+  }
 });
 
 test('a wrong type and an unknown parameter are refused before anything starts', async () => {

@@ -252,14 +252,24 @@ TEST(FoundServersOfAFolder, AreThoseOfItsCellFile) {
         "\"JointLinearMoveSkill\"]\nstall_limit = 2.0\n",
         port, METIER_SOURCE_DIR);
     const ServerProcess arm("iiwa", {}, folder / "cell.toml");
-    std::vector<std::string> command{"env", "-C", folder.string()};
-    for (const auto& argument : metierCommand(
-             {"run", "JointPtpMoveSkill", "--set", "TargetJointPosition=0,0.5,0,-1,0,1,0"})) {
-        command.push_back(argument);
-    }
-    const auto run = runToEnd(command);
+    const auto here = [&folder](const std::vector<std::string>& arguments) {
+        std::vector<std::string> command{"env", "-C", folder.string()};
+        const auto program = metierCommand(arguments);
+        command.insert(command.end(), program.begin(), program.end());
+        return runToEnd(command);
+    };
+    const auto run =
+        here({"run", "JointPtpMoveSkill", "--set", "TargetJointPosition=0,0.5,0,-1,0,1,0"});
     EXPECT_EQ(run.status, 0) << run.output;
     EXPECT_THAT(run.output, HasSubstr("found " + arm.url() + " iiwa (cell.toml)"));
+    for (const auto& arguments : std::vector<std::vector<std::string>>{
+             {"list"},
+             {"halt", "--skill", "JointPtpMoveSkill"},
+             {"reset", "JointPtpMoveSkill"},
+             {"square", "--laps", "1", "--svg", (folder / "square.svg").string()}}) {
+        const auto done = here(arguments);
+        EXPECT_EQ(done.status, 0) << arguments.front() << ": " << done.output;
+    }
     std::filesystem::remove_all(folder);
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Changes the code at random places and tells which changes no test notices.
+"""Changes the code at random places and says which changes no test notices.
 
   tools/mutation/mutate.py                        200 mutants over all libraries
   tools/mutation/mutate.py --count 20 --library skill --library motion

@@ -93,7 +93,7 @@ class Checker:
                 yield f"{node.node_id.identifier} {node.browse_name.name} has the unknown data type {node.data_type}"
 
     def units(self) -> Iterator[str]:
-        """Every numeric parameter tells its unit and its range."""
+        """Every numeric parameter has its unit and its range."""
         for node in self.own:
             if not self._is_numeric_parameter(node):
                 continue

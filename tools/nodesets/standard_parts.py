@@ -30,7 +30,7 @@ METADATA = {
 
 
 def add_metadata(builder: Builder, source: Source) -> None:
-    """The object below Server/Namespaces that tells URI, version and id range of the namespace."""
+    """The object below Server/Namespaces that shows URI, version and id range of the namespace."""
     known = {
         "NamespaceUri": source.uri,
         "NamespaceVersion": source.version,

@@ -181,26 +181,39 @@ private:
     double reported_deviation_ = 0;
 };
 
+/// Takes a skill of that type, or else of one that is derived from it.
+void take(const client::SkillAddress& skill, std::string_view type, client::SkillAddress& taken) {
+    if (skill.type_name == type || (taken.name.empty() && skill.servesAs(type))) {
+        taken = skill;
+    }
+}
+
 }  // namespace
 
-Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::string& url) {
+Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::string& url,
+                                              std::vector<Error>& left_out) {
     METIER_ASSIGN(const auto skills, client::findSkills(client));
     std::map<std::string, SquareArm> by_controller;
     for (const auto& skill : skills) {
         auto& arm = by_controller[skill.controllerName()];
-        if (skill.type_name == kPtpType) {
-            arm.ptp = skill;
-        } else if (skill.type_name == kLinearType) {
-            arm.linear = skill;
-        }
+        take(skill, kPtpType, arm.ptp);
+        take(skill, kLinearType, arm.linear);
     }
     std::vector<SquareArm> arms;
     for (auto& [controller, arm] : by_controller) {
         if (arm.ptp.name.empty() || arm.linear.name.empty()) {
             continue;
         }
-        METIER_ASSIGN(const auto nodes, client::findKinematics(client, arm.linear));
-        arm.name = nodes.device_name;
+        const auto nodes = client::findKinematics(client, arm.linear);
+        if (!nodes && nodes.error().code == Errc::not_found) {
+            left_out.push_back(
+                {Errc::not_found, fmt::format("{}: {}", url, nodes.error().message)});
+            continue;
+        }
+        if (!nodes) {
+            return fail(nodes.error());
+        }
+        arm.name = nodes->device_name;
         arm.url = url;
         arms.push_back(std::move(arm));
     }

@@ -42,7 +42,8 @@ struct SquareResult {
 using SquareProgress = std::function<void(double fraction, const std::string& text)>;
 
 /// Every controller of a server that has both skills.
-Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::string& url);
+Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::string& url,
+                                              std::vector<Error>& left_out);
 
 /// Places a square where the arm has room, goes to its first corner by PTP and around it by LIN.
 /// Waits until it is done.

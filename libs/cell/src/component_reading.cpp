@@ -27,6 +27,10 @@ void readRobotModel(const TomlTable& table, const std::filesystem::path& folder,
     if (table.has("model")) {
         move.model = pathIn(table, "model", folder);
     }
+    move.device = table.textOr("device", "");
+    if (!move.device.empty() && move.model.empty()) {
+        table.reject("device", "is of a robot with a \"model\" here; there is none");
+    }
     if (table.has("axes")) {
         move.axes = table.texts("axes");
         if (move.model.empty()) {
@@ -82,6 +86,7 @@ std::vector<Force> readForces(const TomlTable& table, const std::vector<UsedServ
 MoveComponent readMove(const TomlTable& table, const std::filesystem::path& folder) {
     MoveComponent move;
     move.robot = table.text("robot");
+    move.controller = table.textOr("controller", "");
     if (move.robot != kDiscover) {
         readRobotModel(table, folder, move);
         return move;

@@ -586,11 +586,15 @@ kind = "move"
 robot = "opc.tcp://arm:4840"
 model = "arm.toml"
 axes = ["elbow", "base"]
+controller = "Left"
+device = "LeftArm"
 )");
     ASSERT_TRUE(cell) << cell.error().message;
     const auto& move = std::get<MoveComponent>(cell->servers[0].kind);
     EXPECT_EQ(move.model, folder_ / "arm.toml");
     EXPECT_THAT(move.axes, ElementsAre("elbow", "base"));
+    EXPECT_EQ(move.controller, "Left");
+    EXPECT_EQ(move.device, "LeftArm");
 }
 
 TEST_F(CellFile, TakesAModelOnlyOfAKnownRobotAndAnOrderOnlyOfAModel) {
@@ -608,10 +612,12 @@ name = "move"
 kind = "move"
 robot = "opc.tcp://arm:4840"
 axes = ["elbow", "base"]
+device = "LeftArm"
 )");
     ASSERT_FALSE(cell);
     EXPECT_THAT(cell.error().message, HasSubstr("server[0].model: unknown key"));
     EXPECT_THAT(cell.error().message, HasSubstr("server[1].axes: is the order of the joints"));
+    EXPECT_THAT(cell.error().message, HasSubstr("server[1].device: is of a robot with a"));
 }
 
 TEST_F(CellFile, RefusesToDiscoverWithoutAnybodyToAsk) {

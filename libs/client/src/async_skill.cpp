@@ -146,9 +146,6 @@ Answer<skill::ExecutionRecord> recordFrom(const std::vector<opcua::DataValue>& v
     return record;
 }
 
-// Longest time for which the event of an end may come after the state that shows it.
-constexpr auto kEventTime = std::chrono::milliseconds(200);
-
 /// Says why an execution has ended where only the skill's event does, which may come later than the
 /// state.
 struct TextOfEnd {

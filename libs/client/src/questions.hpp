@@ -47,7 +47,7 @@ private:
             return {};
         }
         return tl::unexpected(failureOf(
-            Errc::timeout, "the server goes on telling of more than anybody would look at"));
+            Errc::timeout, "the server goes on publishing more than anybody would look at"));
     }
 
     opcua::Client& client_;

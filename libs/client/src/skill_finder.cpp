@@ -65,8 +65,21 @@ private:
                       questions_.read(skill.type_definition, opcua::AttributeId::browse_name));
         const auto type = type_name.as<opcua::QualifiedName>().value_or(opcua::QualifiedName{});
         found.push_back({sanitise(skill.browse_name.name), sanitise(skill.display_name.text),
-                         skill.target, skill.type_definition, sanitise(type.name), above});
+                         skill.target, skill.type_definition, sanitise(type.name), above,
+                         baseTypesOf(skill.type_definition)});
         return {};
+    }
+
+    /// Of a type that isProgram() has looked at.
+    std::vector<std::string> baseTypesOf(const NodeId& type) const {
+        std::vector<std::string> names;
+        auto parent = parents_.find(type);
+        while (parent != parents_.end() && names.size() <= kMaxDepth &&
+               parent->second.target != opcua::ids::kProgramStateMachineType) {
+            names.push_back(sanitise(parent->second.browse_name.name));
+            parent = parents_.find(parent->second.target);
+        }
+        return names;
     }
 
     /// A type that is derived from itself, over whatever way, is none.
@@ -83,6 +96,9 @@ private:
                                                  .reference_type = opcua::ids::kHasSubtype,
                                                  .direction = BrowseQuery::Direction::inverse,
                                                  .node_classes = {}}));
+                if (!parents.empty()) {
+                    parents_.emplace(next, parents.front());
+                }
                 next = parents.empty() ? NodeId{} : parents.front().target;
             }
         }
@@ -107,6 +123,7 @@ private:
     Questions questions_;
     std::set<NodeId> seen_;
     std::map<NodeId, bool> is_program_;
+    std::map<NodeId, Reference> parents_;  // types above those that were looked at
 };
 
 bool matches(const SkillAddress& skill, std::string_view name) {
@@ -128,6 +145,19 @@ const SkillAddress::Above* SkillAddress::controller() const {
                                      [](const Above& object) { return object.name == "Skills"; });
     return skills == above.rend() || std::next(skills) == above.rend() ? nullptr
                                                                        : &*std::next(skills);
+}
+
+bool SkillAddress::servesAs(std::string_view wanted) const {
+    constexpr std::string_view kForceMove = "CartesianLinearForceMoveSkillType";
+    const auto is_it = [wanted](const std::string& each) {
+        return each == wanted || each + "Type" == wanted;
+    };
+    if (is_it(type_name)) {
+        return true;
+    }
+    const auto found = std::find_if(base_types.begin(), base_types.end(), is_it);
+    return found != base_types.end() && type_name != kForceMove &&
+           std::find(base_types.begin(), found, kForceMove) == found;
 }
 
 std::string SkillAddress::controllerName() const {

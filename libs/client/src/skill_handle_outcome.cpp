@@ -58,8 +58,6 @@ Failure givenUpFailure(const std::string& skill) {
 
 // How often the state of a skill is looked at that may send nothing at its end.
 constexpr auto kLook = std::chrono::seconds(1);
-// Longest time for which the event of an end may come after the state that shows it.
-constexpr auto kEventTime = std::chrono::milliseconds(200);
 
 /// Whether to ask again, once the connection allows it.
 bool isForLackOfConnection(const Failure& failure) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -17,6 +18,9 @@
 #include "state_poll.hpp"
 
 namespace metier::client {
+
+/// Longest time for which the event of an end may come after the state that shows it.
+inline constexpr std::chrono::milliseconds kEventTime{200};
 
 /// The transitions of one skill as they arrive, numbered from 0; the newest thousand are kept.
 ///

@@ -30,6 +30,10 @@ struct ForeignShape {
     bool has_reset = true;     ///< of the stream skill
     bool takes_poses = false;  ///< instead of joint positions
     bool follows = true;       ///< its set-points
+    /// Whether the server has another arm in the same system.
+    bool other_arm = false;
+    /// Whether it has another stream, of the controller "Other".
+    bool other_stream = false;
     skill::State state = skill::State::ready;
 };
 
@@ -42,12 +46,19 @@ public:
     explicit ForeignArm(ForeignShape shape = {})
         : shape_(std::move(shape)), state_(shape_.state), position_(shape_.axes.size(), 0.1) {
         const auto system = served_.object(opcua::ids::kObjectsFolder, "Robot");
-        addAxes(served_.object(served_.object(system, "MotionDevices"), "Arm"));
+        const auto devices = served_.object(system, "MotionDevices");
+        addAxes(served_.object(devices, "Arm"));
+        if (shape_.other_arm) {
+            addAxes(served_.object(devices, "OtherArm"));
+        }
         if (shape_.has_safety) {
             addSafety(served_.object(served_.object(system, "SafetyStates"), "Safety"));
         }
         const auto controllers = served_.object(system, "Controllers");
         addSkill(served_.object(served_.object(controllers, "Controller"), "Skills"));
+        if (shape_.other_stream) {
+            addSkill(served_.object(served_.object(controllers, "Other"), "Skills"));
+        }
     }
 
     std::string url() { return served_.url(); }

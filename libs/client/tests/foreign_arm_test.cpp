@@ -410,6 +410,26 @@ TEST(ForeignArm, TellsWhatItLacks) {
                                                        Lack::measured_state, Lack::safety_state));
 }
 
+TEST(ForeignArm, WithOtherArmsAtItsServerIsNotGuessed) {
+    ForeignArm two_arms({.other_arm = true});
+    EXPECT_THAT(refusal(optionsFor(two_arms)).message,
+                HasSubstr("PositionStreamSkill could move any of Arm, OtherArm"));
+    auto of_one = optionsFor(two_arms);
+    of_one.given->device = "OtherArm";
+    EXPECT_TRUE(RemoteArm::connect(of_one));
+    ForeignArm two_streams({.other_stream = true});
+    auto options = optionsFor(two_streams);
+    const auto several = refusal(options);
+    EXPECT_EQ(several.code, Errc::invalid_argument);
+    EXPECT_THAT(several.message, HasSubstr("PositionStreamSkill of Controller, PositionStreamSkill "
+                                           "of Other; choose one by controller"));
+    options.controller = "Nobody";
+    EXPECT_EQ(refusal(options).code, Errc::not_found);
+    options.controller = "Other";
+    const auto arm = RemoteArm::connect(options);
+    EXPECT_TRUE(arm) << arm.error().message;
+}
+
 TEST(ForeignArm, IsRefusedWithTheReason) {
     ForeignArm foreign;
     EXPECT_THAT(refusal({.url = foreign.url()}).message, HasSubstr("no model is given"));

@@ -98,7 +98,7 @@ protected:
 
 TEST_F(PolledState, AddsEachChangeAndADoubt) {
     poll_->begin();
-    poll_->noteStart();
+    ASSERT_TRUE(client_->read(state_)) << "answered after the first read of the poll";
     show(State::running);
     ASSERT_TRUE(heard_.awaitTransitions(1));
     show(State::suspended);

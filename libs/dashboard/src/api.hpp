@@ -33,7 +33,7 @@ public:
     /// `parts` must outlive this, and this must outlive the HTTP server.
     explicit Api(const Parts& parts);
 
-    /// Tells the server every path.
+    /// Registers every path at the server.
     void bind(http::HttpServer& server);
 
 private:

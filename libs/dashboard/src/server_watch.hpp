@@ -41,7 +41,7 @@ private:
     };
 
     void run(const std::stop_token& stop);
-    /// Tells the board why not.
+    /// Shows on the board why not.
     std::shared_ptr<ServerLink> connect();
     void keep(ServerLink& link, const std::stop_token& stop);
     void present(std::shared_ptr<ServerLink> link);

@@ -28,6 +28,29 @@ TEST(SkillMatching, GoesByTheTypeWithItsEndingOrWithout) {
     EXPECT_FALSE(isOfType(skill, "MoveSkillType")) << "types that it is derived from do not count";
 }
 
+TEST(SkillMatching, TakesASkillOfADerivedTypeIfThereIsNoneOfTheVeryType) {
+    auto careful = offer("acme", "Arm", "CarefulMoveSkillType");
+    careful.address.base_types = {"JointPtpMoveSkillType", "MoveSkillType", "SkillType"};
+    const auto plain = offer("iiwa", "Arm", "JointPtpMoveSkillType");
+    EXPECT_EQ(choose(use("JointPtpMoveSkillType"), {careful}).value().server, "acme");
+    EXPECT_EQ(choose(use("JointPtpMoveSkillType"), {careful, plain}).value().server, "iiwa");
+    auto of_acme = use("JointPtpMoveSkillType");
+    of_acme.server = "acme";
+    EXPECT_EQ(choose(of_acme, {careful, plain}).value().server, "acme")
+        << "the very type is not of this server";
+    EXPECT_FALSE(choose(use("MoveSkillType"), {careful, careful})) << "which one?";
+    EXPECT_FALSE(choose(use("StreamSkillType"), {careful}));
+    EXPECT_FALSE(choose(use("JointPtpMoveSkillType"), {careful}, Derived::left_out));
+    auto grasp = offer("acme", "Jaws", "CarefulGraspSkillType");
+    grasp.address.base_types = {"GraspGripperSkill", "GripperSkillType", "SkillType"};
+    EXPECT_TRUE(choose(use("GraspGripperSkillType"), {grasp}))
+        << "the published name has no ending";
+    auto force = offer("press", "Arm", "CartesianLinearForceMoveSkillType");
+    force.address.base_types = {"CartesianLinearMoveSkillType", "MoveSkillType"};
+    EXPECT_FALSE(choose(use("CartesianLinearMoveSkillType"), {force})) << "it needs a force";
+    EXPECT_TRUE(choose(use("CartesianLinearForceMoveSkillType"), {force}));
+}
+
 TEST(SkillMatching, KnowsComposedSkillsByTheirName) {
     client::SkillAddress composed;
     composed.name = "VisitSkill";

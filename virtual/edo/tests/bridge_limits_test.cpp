@@ -14,9 +14,18 @@ using testing::SizeIs;
 
 constexpr const char* kNote = R"({"op":"publish","topic":"/tablet_HB","msg":{"data":1}})";
 
-void sendPart(Rig& rig, const Json& id, const std::string& data, int number, int total) {
-    rig.client.say(
-        {{"op", "fragment"}, {"id", id}, {"data", data}, {"num", number}, {"total", total}});
+/// Place of a fragment among those of its message.
+struct Part {
+    int number;
+    int total;
+};
+
+void sendPart(Rig& rig, const Json& id, const std::string& data, Part part) {
+    rig.client.say({{"op", "fragment"},
+                    {"id", id},
+                    {"data", data},
+                    {"num", part.number},
+                    {"total", part.total}});
 }
 
 TEST(Fragments, OfAsManyMessagesAsAClientMayHaveOpenAreJoined) {
@@ -24,16 +33,16 @@ TEST(Fragments, OfAsManyMessagesAsAClientMayHaveOpenAreJoined) {
     rig.client.subscribe("/tablet_HB");
     const std::string note = kNote;
     for (int id = 0; id < 256; ++id) {
-        sendPart(rig, id, note.substr(0, 10), 0, 2);
+        sendPart(rig, id, note.substr(0, 10), {0, 2});
     }
     EXPECT_THAT(rig.client.errors(), IsEmpty());
-    sendPart(rig, 256, note.substr(0, 10), 0, 2);
+    sendPart(rig, 256, note.substr(0, 10), {0, 2});
     EXPECT_THAT(rig.client.errors(), SizeIs(1)) << "one too many";
     for (int id = 0; id < 256; ++id) {
-        sendPart(rig, id, note.substr(10), 1, 2);
+        sendPart(rig, id, note.substr(10), {1, 2});
     }
     EXPECT_THAT(rig.client.messages("/tablet_HB"), SizeIs(256));
-    sendPart(rig, 256, note, 0, 1);
+    sendPart(rig, 256, note, {0, 1});
     EXPECT_THAT(rig.client.messages("/tablet_HB"), SizeIs(257)) << "there is room again";
 }
 
@@ -42,11 +51,11 @@ TEST(Fragments, OfOtherClientsAreNotMixedUp) {
     ScriptedClient other(rig.bridge);
     rig.client.subscribe("/tablet_HB");
     const std::string note = kNote;
-    sendPart(rig, "same", note.substr(0, 10), 0, 2);
+    sendPart(rig, "same", note.substr(0, 10), {0, 2});
     other.say(
         {{"op", "fragment"}, {"id", "same"}, {"data", note.substr(10)}, {"num", 1}, {"total", 2}});
     EXPECT_THAT(rig.client.messages("/tablet_HB"), IsEmpty());
-    sendPart(rig, "same", note.substr(10), 1, 2);
+    sendPart(rig, "same", note.substr(10), {1, 2});
     EXPECT_THAT(rig.client.messages("/tablet_HB"), SizeIs(1));
 }
 
@@ -54,12 +63,12 @@ TEST(Fragments, ThatMakeNoMessageOrAnotherFragmentAreRefused) {
     Rig rig;
     for (const char* whole : {"{", "5", R"({"op":"fragment"})", R"({"op":5})"}) {
         rig.client.received.clear();
-        sendPart(rig, "f", whole, 0, 1);
+        sendPart(rig, "f", whole, {0, 1});
         EXPECT_THAT(rig.client.errors(), Contains(HasSubstr("no message together"))) << whole;
     }
     for (const auto& [number, total] : {std::pair(0, 0), std::pair(1, 1), std::pair(0, 257)}) {
         rig.client.received.clear();
-        sendPart(rig, "f", kNote, number, total);
+        sendPart(rig, "f", kNote, {number, total});
         EXPECT_THAT(rig.client.errors(), Contains(HasSubstr("total at most 256")));
     }
 }

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -17,9 +18,14 @@ using Said = std::pair<int, int>;  // type and data
 const Said kReceived{0, 0};
 const Said kEnded{2, 1};
 
-Json pose(double x, double y, double z, double a, double e, double r) {
-    return Json::object(
-        {{"x", x}, {"y", y}, {"z", z}, {"a", a}, {"e", e}, {"r", r}, {"config_flags", ""}});
+/// \param values x, y, z [mm], a, e, r [deg]
+Json pose(const std::array<double, 6>& values) {
+    Json pose = Json::object({{"config_flags", ""}});
+    constexpr std::array kNames{"x", "y", "z", "a", "e", "r"};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        pose[kNames.at(i)] = values.at(i);
+    }
+    return pose;
 }
 
 void moveCartesian(Rig& rig, const Json& target, const char* type = "L") {
@@ -148,9 +154,9 @@ TEST(Move, UsesToolAndFrame) {
          {"ovr", 100},
          {"target",
           {{"data_type", 80},
-           {"cartesian_data",
-            pose(start["x"].get<double>() - 400, start["y"].get<double>(),
-                 start["z"].get<double>() - 100 - 200, start["a"], start["e"], start["r"])}}},
+           {"cartesian_data", pose({start["x"].get<double>() - 400, start["y"].get<double>(),
+                                    start["z"].get<double>() - 100 - 200, start["a"].get<double>(),
+                                    start["e"].get<double>(), start["r"].get<double>()})}}},
          {"tool", {{"z", 100}}},
          {"frame", {{"x", 400}, {"z", 200}}}});
     EXPECT_TRUE(rig.runUntilState(2));
@@ -163,7 +169,7 @@ TEST(Move, UsesToolAndFrame) {
 
 TEST(Move, RefusesAPoseOutOfReach) {
     Rig rig;
-    moveCartesian(rig, pose(2000, 0, 300, 0, 180, 0));
+    moveCartesian(rig, pose({2000, 0, 300, 0, 180, 0}));
     rig.run(3);
     EXPECT_THAT(rig.feedback(), ElementsAre(kReceived, Said(-1, -76), Said(-1, -103)));
     EXPECT_EQ(rig.state(), 2);
@@ -459,7 +465,7 @@ TEST(Jog, MovesALine) {
             "/bridge_jog",
             {{"move_command", 74},
              {"move_type", 76},
-             {"target", {{"data_type", 80}, {"cartesian_data", pose(0, 0, -1, 0, 0, 0)}}}});
+             {"target", {{"data_type", 80}, {"cartesian_data", pose({0, 0, -1, 0, 0, 0})}}}});
         rig.run(10);
     }
     EXPECT_EQ(rig.state(), 4);

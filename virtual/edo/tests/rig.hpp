@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -36,12 +38,13 @@ public:
     /// The answer's values; the whole response if it failed.
     Json call(const std::string& service, const Json& arguments = Json::object()) {
         say({{"op", "call_service"}, {"service", service}, {"args", arguments}, {"id", "c"}});
-        for (auto response = received.rbegin(); response != received.rend(); ++response) {
-            if ((*response)["op"] == "service_response") {
-                return (*response)["result"].get<bool>() ? (*response)["values"] : *response;
-            }
+        const auto response = std::find_if(
+            received.rbegin(), received.rend(),
+            [](const auto& message) { return message.at("op") == "service_response"; });
+        if (response == received.rend()) {
+            return nullptr;
         }
-        return nullptr;
+        return (*response)["result"].get<bool>() ? (*response)["values"] : *response;
     }
     std::vector<Json> messages(const std::string& topic) const {
         std::vector<Json> found;
@@ -111,7 +114,7 @@ public:
             noteState();
         }
     }
-    void runSeconds(double seconds) { run(static_cast<int>(seconds * 100.0 + 0.5)); }
+    void runSeconds(double seconds) { run(static_cast<int>(std::lround(seconds * 100.0))); }
     /// Runs until the machine reports that state. \return after how long [s]; nothing after 20 s
     std::optional<double> runUntilState(int wanted) {
         for (int cycles = 0; cycles < 2000; ++cycles) {

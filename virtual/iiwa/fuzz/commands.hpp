@@ -22,7 +22,7 @@ inline Command commandOf(std::span<const std::uint8_t> input, Precision precisio
     auto command = decodeCommand(std::as_bytes(input), precision);
     if (input[0] % 2 == 0) {
         constexpr std::array kFirst{101.0, 201.0, 211.0, 221.0, 301.0, 400.0};
-        command.code = kFirst[input[1] % kFirst.size()] + input[1] / 32;
+        command.code = kFirst[input[1] % kFirst.size()] + double(input[1] >> 5U);
     }
     return command;
 }

@@ -188,7 +188,7 @@ TEST_F(IiwaTest, EndsOnMoreBytesThanItKeepsWhileItIsBusy) {
     EXPECT_EQ(pc_.command({201, 0.02F}), 1.0F);
     EXPECT_EQ(pc_.command({305, 52}), 1.0F);
     pc_.send({102, 1.0F, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN});
-    const auto moves = [](const auto& state) { return state["moving"] == true; };
+    const auto moves = [](const auto& state) { return state.value("moving", false); };
     ASSERT_TRUE(controller.waitUntil(moves));
     pc_.sendRaw(std::vector<std::byte>(65'536));
     EXPECT_TRUE(controller.waitUntil(moves));

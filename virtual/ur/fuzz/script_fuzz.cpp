@@ -50,6 +50,16 @@ std::string statement(const char* pattern, std::uint8_t first, std::uint8_t seco
     return text;
 }
 
+void abortBeyondLimits(const metier::virtual_ur::Robot& robot) {
+    for (std::size_t axis = 0; axis < metier::virtual_ur::kAxes; ++axis) {
+        const auto& limits = robot.options().arm.limits[axis];
+        if (!(std::abs(robot.state().target_q[axis]) < 7.0) ||
+            !(std::abs(robot.state().target_qd[axis]) <= 1.02 * limits.velocity)) {
+            std::abort();
+        }
+    }
+}
+
 }  // namespace
 
 // Text of a script port: as it comes, and as a program of statements that exist. Whatever a program
@@ -73,13 +83,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         robot.takeScript(program);
         for (int i = 0; i < 40; ++i) {
             robot.cycle();
-            for (std::size_t axis = 0; axis < kAxes; ++axis) {
-                const auto& limits = robot.options().arm.limits[axis];
-                if (!(std::abs(robot.state().target_q[axis]) < 7.0) ||
-                    !(std::abs(robot.state().target_qd[axis]) <= 1.02 * limits.velocity)) {
-                    std::abort();
-                }
-            }
+            abortBeyondLimits(robot);
         }
     }
     table().told.clear();

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <asio/io_context.hpp>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,7 +43,9 @@ public:
             robot.cycle();
         }
     }
-    void seconds(double time) { cycles(static_cast<std::size_t>(time * robot.rate() + 0.5)); }
+    void seconds(double time) {
+        cycles(static_cast<std::size_t>(std::lround(time * robot.rate())));
+    }
     /// Cycles until it is so, at most that many seconds. \return whether it became so
     template <typename Condition>
     bool until(Condition condition, double most = 20.0) {

@@ -214,7 +214,7 @@ TEST(UrController, RtdePackagesLieOnAGridAndComeEvenly) {
         std::optional<double> before;
         for (int i = 0; i < 50; ++i) {
             const auto sample = client.sample();
-            const double timestamp = ByteReader(sample).get<double>();
+            const auto timestamp = ByteReader(sample).get<double>();
             EXPECT_GT(timestamp, 40.0);
             if (before) {
                 EXPECT_NEAR(timestamp - *before, 1.0 / rate, 1e-6);
@@ -316,7 +316,7 @@ TEST(UrController, TheRealTimePortSendsEachCycle) {
     for (int i = 0; i < 20; ++i) {
         const auto package = readPackage(link);
         ASSERT_EQ(package.size(), 1220U);
-        const double time = ByteReader(std::span(package).subspan(4)).get<double>();
+        const auto time = ByteReader(std::span(package).subspan(4)).get<double>();
         if (before > 0.0) {
             EXPECT_NEAR(time - before, 0.002, 1e-9);
         }

@@ -7,7 +7,7 @@ const kEvents = ['hello', 'cell', 'snapshot', 'skill', 'control', 'server', 'ala
 /** Longest silence before the stream is given up and opened anew [ms]. */
 const kSilence = 5_000;
 
-/** Reconnects by itself until closed. Tells `lost` once for each loss. */
+/** Reconnects by itself until closed. Calls `lost` once for each loss. */
 export class Stream {
     private source: EventSource | null = null;
     private watchdog = 0;

@@ -16,7 +16,7 @@ export function inOrder(files: readonly string[], arm: Arm): string[] {
     return [...files.filter(names), ...files.filter((file) => !names(file))];
 }
 
-/** Looks for a URDF for each arm and draws it. Where none fits, the primitives stay. Tells whose were drawn. */
+/** Looks for a URDF for each arm and draws it. Where none fits, the primitives stay. Returns whose were drawn. */
 export async function useUserMeshes(view: CellView, drawn: (arm: string) => void): Promise<void> {
     const files = await api.meshes().then((answer) => answer.files, () => []);
     if (files.length === 0) return;

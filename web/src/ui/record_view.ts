@@ -37,7 +37,7 @@ function facts(records: readonly RecordDetail[]): HTMLElement {
     return list;
 }
 
-/** Tells which column is which in pictures. */
+/** Names the columns in pictures. */
 function runMark(run: number): HTMLElement {
     const mark = h('dd', { class: 'run-mark', 'aria-hidden': 'true' });
     mark.style.setProperty('--run', kRunColors[run] as string);

@@ -47,9 +47,12 @@ Result<std::vector<Component>> findComponents(const CommandIdentity& identity,
     for (const auto& url : urls) {
         METIER_ASSIGN(auto client, connectTo(identity, url));
         METIER_ASSIGN(const auto skills, client::findSkills(*client));
-        const auto skill = std::find_if(skills.begin(), skills.end(), [](const auto& address) {
-            return address.type_name == kType;
-        });
+        auto skill = std::find_if(skills.begin(), skills.end(),
+                                  [](const auto& address) { return address.type_name == kType; });
+        if (skill == skills.end()) {
+            skill = std::find_if(skills.begin(), skills.end(),
+                                 [](const auto& address) { return address.servesAs(kType); });
+        }
         if (skill == skills.end()) {
             continue;
         }

@@ -186,9 +186,10 @@ void addServe(CLI::App& app, CommandContext& context) {
                      "Where every execution is recorded, instead of the file's: a file, "
                      "postgresql://..., or off. Else records.db in the state folder")
         ->check(withoutPassword());
-    command->add_option("--metrics", options->metrics,
-                        "Tell figures at http://ADDRESS:PORT/metrics and /healthz, instead of the "
-                        "file's; PORT alone is one of 127.0.0.1; off");
+    command->add_option(
+        "--metrics", options->metrics,
+        "Publish figures at http://ADDRESS:PORT/metrics and /healthz, instead of the "
+        "file's; PORT alone is one of 127.0.0.1; off");
     command->callback(
         [options, &context] { context.exit = exitOf(runServe(*options, context.security)); });
 }

@@ -92,9 +92,9 @@ struct ConnectedArm {
 
 /// Adds the arms of one server to `found`.
 Result<void> findArmsAt(const CommandIdentity& identity, const std::string& url,
-                        std::vector<ConnectedArm>& found) {
+                        std::vector<ConnectedArm>& found, std::vector<Error>& left_out) {
     METIER_ASSIGN(auto client, connectTo(identity, url));
-    METIER_ASSIGN(auto arms, findSquareArms(*client, url));
+    METIER_ASSIGN(auto arms, findSquareArms(*client, url, left_out));
     for (auto& arm : arms) {
         if (client == nullptr) {
             METIER_ASSIGN(client, connectTo(identity, url));  // a connection for each arm
@@ -107,12 +107,19 @@ Result<void> findArmsAt(const CommandIdentity& identity, const std::string& url,
 Result<std::vector<ConnectedArm>> findArms(const CommandIdentity& identity,
                                            const std::vector<std::string>& urls) {
     std::vector<ConnectedArm> found;
+    std::vector<Error> left_out;
     for (const auto& url : urls) {
-        METIER_TRY(findArmsAt(identity, url, found));
+        METIER_TRY(findArmsAt(identity, url, found, left_out));
     }
     if (found.empty()) {
-        return fail(Errc::not_found,
-                    "no arm with CartesianPtpMoveSkill and CartesianLinearMoveSkill found");
+        return fail(left_out.empty()
+                        ? Error{Errc::not_found,
+                                "no arm with CartesianPtpMoveSkill and CartesianLinearMoveSkill "
+                                "found"}
+                        : std::move(left_out.front()));
+    }
+    for (const auto& problem : left_out) {
+        report(problem);
     }
     return found;
 }

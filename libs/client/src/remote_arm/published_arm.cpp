@@ -31,7 +31,7 @@ Result<PublishedArm> withKinematics(opcua::Client& client, KinematicsNodes nodes
 
 Result<PublishedArm> withAxes(opcua::Client& client, const SkillAddress& skill,
                               const GivenArm& given) {
-    METIER_ASSIGN(auto robotics, findRoboticsArm(client, skill));
+    METIER_ASSIGN(auto robotics, findRoboticsArm(client, skill, given.device));
     AxisNames names{given.joint_names, {}, given.array_order};
     for (const auto& axis : robotics.axes) {
         names.axes.push_back(axis.name);

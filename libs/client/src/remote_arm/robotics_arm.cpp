@@ -1,11 +1,13 @@
 #include "remote_arm/robotics_arm.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "metier/opcua/text.hpp"
@@ -25,8 +27,12 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr std::int32_t kRadianId = 4'405'297;
 constexpr std::int32_t kDegreeId = 17'476;
 
+/// Each once, however often it is referenced.
 Answer<References> partsOf(Questions& questions, const NodeId& node) {
-    return questions.browse({.node = node, .node_classes = {}});
+    METIER_ASSIGN(auto parts, questions.browse({.node = node, .node_classes = {}}));
+    std::set<NodeId> seen;
+    std::erase_if(parts, [&](const Reference& part) { return !seen.insert(part.target).second; });
+    return parts;
 }
 
 const Reference* partNamed(const References& references, std::string_view name) {
@@ -119,55 +125,94 @@ Answer<> addSafety(Questions& questions, const NodeId& system, RoboticsArm& arm)
     return {};
 }
 
+/// The arm that a skill moves.
+struct WantedArm {
+    const SkillAddress& skill;
+    const std::string& device;  // BrowseName; empty: any
+};
+
+/// Errors: invalid_argument, if there are several: the position of another arm would be taken.
+Answer<> checkOnlyOne(const std::vector<RoboticsArm>& arms, const SkillAddress& skill) {
+    std::vector<std::string> names;
+    for (const auto& arm : arms) {
+        names.push_back(arm.name);
+    }
+    return arms.size() <= 1
+               ? Answer<>()
+               : tl::unexpected(failureOf(
+                     Errc::invalid_argument,
+                     fmt::format(
+                         "{} could move any of {}: none of them is above it; choose one by device",
+                         skill.name, fmt::join(names, ", "))));
+}
+
 /// The arm of a system; nothing if the object is no system with one.
 Answer<std::optional<RoboticsArm>> armOf(Questions& questions, const NodeId& system,
-                                         const SkillAddress& skill) {
+                                         const WantedArm& wanted) {
+    const auto& skill = wanted.skill;
     METIER_ASSIGN(const auto folder, below(questions, system, {"MotionDevices"}));
     if (folder.isNull()) {
         return std::optional<RoboticsArm>();
     }
     METIER_ASSIGN(auto devices, partsOf(questions, folder));
-    std::stable_partition(devices.begin(), devices.end(), [&](const Reference& device) {
+    const auto own = std::find_if(devices.begin(), devices.end(), [&](const Reference& device) {
         return std::any_of(skill.above.begin(), skill.above.end(),
                            [&](const auto& above) { return above.node == device.target; });
     });
+    if (own != devices.end()) {
+        devices = {*own};
+    }
+    std::erase_if(devices, [&](const Reference& device) {
+        return !wanted.device.empty() && device.browse_name.name != wanted.device;
+    });
+    std::vector<RoboticsArm> arms;
     for (const auto& device : devices) {
         METIER_ASSIGN(auto axes, axesOf(questions, device.target));
         if (!axes.empty()) {
-            RoboticsArm arm{sanitise(device.browse_name.name), std::move(axes)};
-            METIER_TRY(addSafety(questions, system, arm));
-            return std::optional(std::move(arm));
+            arms.push_back({sanitise(device.browse_name.name), std::move(axes)});
         }
     }
-    return std::optional<RoboticsArm>();
+    METIER_TRY(checkOnlyOne(arms, skill));
+    if (arms.empty()) {
+        return std::optional<RoboticsArm>();
+    }
+    METIER_TRY(addSafety(questions, system, arms.front()));
+    return std::optional(std::move(arms.front()));
 }
 
-/// Objects that may be the system of the skill's arm, the most likely first.
-Answer<std::vector<NodeId>> systemsOf(Questions& questions, const SkillAddress& skill) {
-    std::vector<NodeId> systems;
-    std::transform(skill.above.rbegin(), skill.above.rend(), std::back_inserter(systems),
-                   [](const auto& above) { return above.node; });
+/// The only arm of the devices of the server.
+Answer<std::optional<RoboticsArm>> armOfDevices(Questions& questions, const WantedArm& wanted) {
     METIER_ASSIGN(const auto device_set,
                   below(questions, opcua::ids::kObjectsFolder, {"DeviceSet"}));
+    std::vector<RoboticsArm> arms;
     if (!device_set.isNull()) {
         METIER_ASSIGN(const auto devices, partsOf(questions, device_set));
         for (const auto& device : devices) {
-            systems.push_back(device.target);
+            METIER_ASSIGN(auto arm, armOf(questions, device.target, wanted));
+            if (arm) {
+                arms.push_back(std::move(*arm));
+            }
         }
     }
-    return systems;
+    METIER_TRY(checkOnlyOne(arms, wanted.skill));
+    return arms.empty() ? std::optional<RoboticsArm>() : std::optional(std::move(arms.front()));
 }
 
 }  // namespace
 
-Answer<RoboticsArm> findRoboticsArm(opcua::Client& client, const SkillAddress& skill) {
+Answer<RoboticsArm> findRoboticsArm(opcua::Client& client, const SkillAddress& skill,
+                                    const std::string& device) {
     Questions questions(client);
-    METIER_ASSIGN(const auto systems, systemsOf(questions, skill));
-    for (const auto& system : systems) {
-        METIER_ASSIGN(auto arm, armOf(questions, system, skill));
+    const WantedArm wanted{skill, device};
+    for (auto above = skill.above.rbegin(); above != skill.above.rend(); ++above) {
+        METIER_ASSIGN(auto arm, armOf(questions, above->node, wanted));
         if (arm) {
             return std::move(*arm);
         }
+    }
+    METIER_ASSIGN(auto arm, armOfDevices(questions, wanted));
+    if (arm) {
+        return std::move(*arm);
     }
     return tl::unexpected(failureOf(
         Errc::not_found, skill.name +

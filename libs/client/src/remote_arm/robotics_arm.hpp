@@ -24,12 +24,14 @@ struct RoboticsArm {
     std::vector<opcua::NodeId> protective_stops{};
 };
 
-/// Finds the motion device that a skill moves: the one that the skill is part of, else the first
-/// one with axes in the nearest object above the skill that has a folder MotionDevices, else the
-/// first one of a system in DeviceSet.
-/// Errors: not_found; invalid_argument for an axis whose unit is neither rad nor degree; those of
-///         the server. Threads: any but the client's own; waits.
-opcua::Answer<RoboticsArm> findRoboticsArm(opcua::Client& client, const SkillAddress& skill);
+/// Finds the motion device that a skill moves: the one that the skill is part of, else the only
+/// one, or the only one of that name, with axes in the nearest object above the skill that has a
+/// folder MotionDevices, else the only one of the systems in DeviceSet. Errors: not_found;
+/// invalid_argument for several that it could be, and for an axis whose unit is
+///         neither rad nor degree; those of the server. Threads: any but the client's own; waits.
+/// \param device BrowseName; empty: any
+opcua::Answer<RoboticsArm> findRoboticsArm(opcua::Client& client, const SkillAddress& skill,
+                                           const std::string& device);
 
 /// Reads how many radians one unit of a Variable is, by its EngineeringUnits.
 /// \param preset for a Variable without that Property; 0: it is an error then

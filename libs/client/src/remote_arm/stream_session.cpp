@@ -1,6 +1,7 @@
 #include "remote_arm/stream_session.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -23,25 +24,30 @@ constexpr auto kLongestHalt = 3s;
 // Age of a set-point without an answer from which on no further one is sent to another maker's arm.
 constexpr auto kLongestUnanswered = 100ms;
 
-/// A stream skill, or one of a type below: the published type is abstract.
-Result<bool> isStream(opcua::Client& client, const client::SkillAddress& skill) {
-    if (skill.type_name == kStreamType) {
-        return true;
-    }
-    METIER_ASSIGN(const auto types, client::typeChain(client, skill));
-    return std::any_of(types.begin(), types.end(),
-                       [](const auto& type) { return type.name == kStreamType; });
-}
-
-Result<client::SkillAddress> findStream(opcua::Client& client) {
+/// The only stream skill of a server, or of one of its controllers; also of a type below: the
+/// published type is abstract.
+Result<client::SkillAddress> findStream(opcua::Client& client, const std::string& controller) {
     METIER_ASSIGN(const auto skills, client::findSkills(client));
+    std::vector<client::SkillAddress> streams;
+    std::vector<std::string> names;
     for (const auto& skill : skills) {
-        METIER_ASSIGN(const auto is_stream, isStream(client, skill));
-        if (is_stream) {
-            return skill;
+        const bool wanted = controller.empty() || skill.controllerName() == controller;
+        if (skill.servesAs(kStreamType) && wanted) {
+            names.push_back(fmt::format("{} of {}", skill.name, skill.controllerName()));
+            streams.push_back(skill);
         }
     }
-    return fail(Errc::not_found, "the server has no PositionStreamSkill");
+    if (streams.empty()) {
+        return fail(Errc::not_found,
+                    fmt::format("the server has no PositionStreamSkill{}{}",
+                                controller.empty() ? "" : " of controller ", controller));
+    }
+    if (streams.size() > 1) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("the server has several streams: {}; choose one by controller",
+                                fmt::join(names, ", ")));
+    }
+    return std::move(streams.front());
 }
 
 SafetyState safetyFrom(opcua_skill::SafetyStateKind kind) {
@@ -87,7 +93,7 @@ Result<std::unique_ptr<StreamSession>> StreamSession::open(const RemoteArmOption
     options.publishing_interval = kPublishingInterval;
     options.security = remote.security;
     METIER_ASSIGN(auto client, opcua::Client::connect(remote.url, options));
-    METIER_ASSIGN(auto address, findStream(*client));
+    METIER_ASSIGN(auto address, findStream(*client, remote.controller));
     METIER_ASSIGN(auto arm, findArm(*client, address, remote.given));
     METIER_ASSIGN(auto stream, client::SkillHandle::open(*client, address));
     std::optional<ForeignStream> foreign;

@@ -252,6 +252,19 @@ std::vector<std::byte> FakeController::answerAll(std::vector<std::byte>& receive
     return out;
 }
 
+std::vector<std::byte> FakeController::dueData(SteadyTime& tick) {
+    const auto time = now();
+    if (time < tick) {
+        return {};
+    }
+    tick = std::max(tick + kCycle, time + kCycle / 2);
+    if (ahead()) {
+        return {};
+    }
+    step();
+    return dataPackage();
+}
+
 void FakeController::serveRtde(link::TcpLink& link, const std::stop_token& stop) {
     std::vector<std::byte> received;
     std::array<std::byte, 4096> chunk{};
@@ -275,14 +288,8 @@ void FakeController::serveRtde(link::TcpLink& link, const std::stop_token& stop)
             received.insert(received.end(), chunk.begin(),
                             chunk.begin() + static_cast<std::ptrdiff_t>(count.value_or(0)));
             out = answerAll(received);
-            if (const auto time = now(); time >= tick) {
-                tick = std::max(tick + kCycle, time + kCycle / 2);
-                if (!ahead()) {
-                    step();
-                    const auto data = dataPackage();
-                    out.insert(out.end(), data.begin(), data.end());
-                }
-            }
+            const auto data = dueData(tick);
+            out.insert(out.end(), data.begin(), data.end());
         }
         cycled_.notify_all();
         if (!out.empty()) {

@@ -110,6 +110,8 @@ private:
     void takeInput(const std::vector<std::byte>& payload);
     bool ahead() const;
     void step();
+    /// A data package, if it is time for one and no more than a few are unanswered.
+    std::vector<std::byte> dueData(SteadyTime& tick);
     void runScript();
     std::vector<std::byte> dataPackage();
     std::string obey(const std::string& command);

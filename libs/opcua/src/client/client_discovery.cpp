@@ -116,7 +116,7 @@ void fillMdns(const ServerRegistration& registration, UA_RegisterServer2Request&
     toNative(registration.capabilities, mdns->serverCapabilities, mdns->serverCapabilitiesSize);
 }
 
-/// Tells it by one of the two services, which both answer no more than that it went well.
+/// Registers it by one of the two services, which both answer no more than that it went well.
 template <typename Request>
 Answer<> tell(const std::string& url, const ClientOptions& options,
               std::function<void(Request&)> prepare) {

@@ -60,7 +60,7 @@ public:
     void add(std::uint32_t handle, ItemRequest request, Deadline deadline, Added added);
     /// Removes an item: from now on its callback does not run. Unknown handles are ignored.
     void remove(std::uint32_t handle);
-    /// Tells all items that nothing will come any more, each once.
+    /// Notifies all items that nothing will come any more, each once.
     void end(StatusCode status);
     /// The connection is lost; all items are notified.
     void interrupt(StatusCode status);

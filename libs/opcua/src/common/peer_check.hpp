@@ -31,9 +31,9 @@ public:
     /// \param why text of the peer may be in it, printable
     using OnRefusal =
         std::function<void(std::string_view der, StatusCode status, const std::string& why)>;
-    /// Told of every refusal, also of a certificate that is in order but not the application's.
+    /// Called for every refusal, also of a certificate that is in order but not the application's.
     void onRefusal(OnRefusal handler) { on_refusal_ = std::move(handler); }
-    /// Told whenever a peer's certificate is trusted.
+    /// Called whenever a peer's certificate is trusted.
     void onTrusted(std::function<void()> handler) { on_trusted_ = std::move(handler); }
     /// Asked whether an application may create a Session.
     /// \param may_create gets the certificate's thumbprint and the ApplicationUri

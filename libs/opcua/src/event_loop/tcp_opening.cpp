@@ -19,7 +19,8 @@ using asio::ip::tcp;
 // Pause after running out of file descriptors.
 constexpr std::chrono::milliseconds kAcceptRetry{100};
 
-/// Tells the peer BadTcpServerTooBusy and no reason (OPC 10000-6, 7.1.2.5), if it listens; closes.
+/// Answers the peer BadTcpServerTooBusy and no reason (OPC 10000-6, 7.1.2.5), if it listens;
+/// closes.
 void refuse(tcp::socket& socket) {
     constexpr std::array<unsigned char, 16> kTooBusy{'E', 'R', 'R',  'F',  16,   0,    0,    0,
                                                      0,   0,   0x7D, 0x80, 0xFF, 0xFF, 0xFF, 0xFF};

@@ -14,8 +14,8 @@
 
 namespace metier::opcua {
 
-/// Tells ServerOptions::on_audit, and the subscribers of audit events, what sessions and the server
-/// do. What a peer may cause without a role that commands is limited in number, and the rest
+/// Notifies ServerOptions::on_audit, and the subscribers of audit events, what sessions and the
+/// server do. What a peer may cause without a role that commands is limited in number, and the rest
 /// counted.
 ///
 /// Threading: the server's thread.
@@ -31,7 +31,7 @@ public:
     void sessionClosed(const Session& session);
     void peerRefused(std::string_view der, StatusCode status, std::string_view why);
     void acted(const OwnAct& act);
-    /// Tells what was left out up to now.
+    /// Reports what was left out up to now.
     void tellLeftOut();
 
 private:

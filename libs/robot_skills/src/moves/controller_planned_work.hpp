@@ -14,7 +14,7 @@
 
 namespace metier::robot_skills {
 
-/// Tells an execution of a motion that its controller has ended at the target or by a force.
+/// Notifies an execution of a motion that its controller has ended at the target or by a force.
 using TellMove = std::function<void(const skill::ExecutionHandle&, const MoveResults&,
                                     const device::MotionOutcome&)>;
 

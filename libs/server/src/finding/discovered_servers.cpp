@@ -12,9 +12,10 @@ namespace metier::server {
 namespace {
 
 std::size_t servedBy(const DiscoveredServer& server, const std::vector<composition::Use>& uses) {
-    return static_cast<std::size_t>(std::count_if(
-        uses.begin(), uses.end(),
-        [&](const composition::Use& use) { return choose(use, server.offered).has_value(); }));
+    return static_cast<std::size_t>(
+        std::count_if(uses.begin(), uses.end(), [&](const composition::Use& use) {
+            return choose(use, server.offered, Derived::left_out).has_value();
+        }));
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ Result<std::map<std::string, OfferedSkill>> chooseAll(const std::vector<composit
                                                       const DiscoveredServer& server) {
     std::map<std::string, OfferedSkill> chosen;
     for (const auto& use : uses) {
-        METIER_ASSIGN(auto skill, choose(use, server.offered));
+        METIER_ASSIGN(auto skill, choose(use, server.offered, Derived::left_out));
         chosen.emplace(use.alias, std::move(skill));
     }
     return chosen;
@@ -80,11 +81,11 @@ Result<std::vector<Assignment>> assign(const std::vector<composition::Use>& uses
     for (const auto& use : uses) {
         const auto taken =
             std::find_if(assignments.begin(), assignments.end(), [&](const Assignment& assignment) {
-                return choose(use, assignment.server->offered).has_value();
+                return choose(use, assignment.server->offered, Derived::left_out).has_value();
             });
         if (taken != assignments.end()) {
             taken->uses.push_back(use);
-        } else if (const auto none = choose(use, all).error();
+        } else if (const auto none = choose(use, all, Derived::left_out).error();
                    !use.optional || none.code != Errc::not_found) {
             problems +=
                 fmt::format("{}uses.{}: {}", problems.empty() ? "" : "\n", use.alias, none.message);

@@ -50,10 +50,17 @@ Result<void> checkOwn(const composition::Use& use) {
     return {};
 }
 
-Result<OfferedSkill> choose(const composition::Use& use, const std::vector<OfferedSkill>& offered) {
+Result<OfferedSkill> choose(const composition::Use& use, const std::vector<OfferedSkill>& offered,
+                            Derived derived) {
+    const auto is_very = [&](const OfferedSkill& skill) {
+        return isOfType(skill.address, use.type);
+    };
     std::vector<OfferedSkill> of_type;
     std::copy_if(offered.begin(), offered.end(), std::back_inserter(of_type),
-                 [&](const auto& skill) { return isOfType(skill.address, use.type); });
+                 [&](const auto& skill) {
+                     return is_very(skill) ||
+                            (derived == Derived::taken && skill.address.servesAs(use.type));
+                 });
     std::vector<OfferedSkill> fitting;
     std::copy_if(
         of_type.begin(), of_type.end(), std::back_inserter(fitting), [&](const auto& skill) {
@@ -61,6 +68,9 @@ Result<OfferedSkill> choose(const composition::Use& use, const std::vector<Offer
                    (use.controller.empty() || skill.address.controllerName() == use.controller) &&
                    isAtLeast({use.reach, use.payload}, skill.arm);
         });
+    if (std::any_of(fitting.begin(), fitting.end(), is_very)) {
+        std::erase_if(fitting, [&](const OfferedSkill& skill) { return !is_very(skill); });
+    }
     if (fitting.empty()) {
         return fail(Errc::not_found,
                     fmt::format("no skill of type {}{}; of that type there are: {}", use.type,

@@ -301,7 +301,7 @@ std::optional<std::string> termOf(const SurveyedSkill& skill, const std::string&
 
 bool isA(const SurveyedSkill& skill, const std::string& type) {
     const auto matches = [&type](const std::string& name) {
-        return name == type || name == type + "Type";
+        return name == type || name == type + "Type" || name + "Type" == type;
     };
     return std::any_of(skill.types.begin(), skill.types.end(), matches) ||
            matches(skill.address.name) || matches(skill.address.name + "Type");

@@ -21,7 +21,7 @@ class SkillHost;
 Result<std::vector<composition::Definition>> loadDefinitions(
     const std::vector<std::filesystem::path>& files);
 
-/// Tells the executions of this life of a server from those before.
+/// Distinguishes the executions of this life of a server from those before.
 std::string newLife();
 
 using UsedSkills = std::map<std::string, std::unique_ptr<composition::UsedSkill>>;  ///< by alias

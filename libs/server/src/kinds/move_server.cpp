@@ -198,7 +198,7 @@ void MoveServer::tell(const Error& error) {
     }
 }
 
-/// Tells which robot is moved, and what its motions cannot have.
+/// Logs which robot is moved, and what its motions cannot have.
 void tellOf(const std::string& name, const ConnectedRobot& robot) {
     spdlog::info("{} moves {} ({})", name, robot.arm->info().name, robot.url);
     if (const auto& lacks = robot.arm->lacks(); !lacks.empty()) {

@@ -44,6 +44,7 @@ client::GivenArm givenArm(const motion::RobotModel& model, const cell::MoveCompo
         given.joint_names.push_back(joint.name);
     }
     given.array_order = move.axes;
+    given.device = move.device;
     given.pose_at = [kinematics = model.kinematics()](const device::JointArray& joints) {
         motion::JointVector position(joints.size());
         std::copy(joints.begin(), joints.end(), position.begin());
@@ -75,7 +76,8 @@ opcua_skill::MotionDeviceSystemSpec specOf(const std::string& name, const device
 Result<ConnectedRobot> connectRobot(const std::string& url, const cell::MoveComponent& move,
                                     const Identity& identity) {
     METIER_ASSIGN(const auto file_model, loadModel(move));
-    client::RemoteArmOptions options{.url = url, .security = identity.credentials()};
+    client::RemoteArmOptions options{
+        .url = url, .security = identity.credentials(), .controller = move.controller};
     if (file_model) {
         options.given = givenArm(*file_model, move);
     }

@@ -19,7 +19,7 @@
 
 namespace metier::server {
 
-/// Tells by HTTP what a server does: `/metrics` for Prometheus, and `/healthz`.
+/// Publishes by HTTP what a server does: `/metrics` for Prometheus, and `/healthz`.
 ///
 /// Nothing there waits for the server's thread, so that it answers also while that hangs.
 /// Threading: made before the server's start, and ended once it is stopped, by one thread.

@@ -9,7 +9,7 @@
 
 namespace metier {
 
-/// Kinds of failure, divided by what the caller can do about them. One table in opcua_skill maps
+/// Kinds of failure, divided by what the caller can do about them. One table in libs/opcua maps
 /// these to StatusCodes.
 ///
 /// Add new kinds before `internal`: the table of names in error.cpp ends there, and its size is

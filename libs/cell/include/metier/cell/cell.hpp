@@ -79,6 +79,12 @@ struct MoveComponent {
     /// Names of the model's joints in the order of that server's arrays; empty: by the names of its
     /// axes.
     std::vector<std::string> axes{};
+    /// Controller of the stream at a server with several arms, by its BrowseName; empty: the server
+    /// has one stream.
+    std::string controller{};
+    /// BrowseName of the arm's motion device, at a server whose stream does not say which one it
+    /// moves; with a model only; empty: the only one.
+    std::string device{};
     /// Whether it uses a robot found by discovery, and another one when that is gone.
     bool discover = false;
     /// Least reach of a robot that discovery may choose [m]; none: any.

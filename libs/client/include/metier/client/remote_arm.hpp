@@ -27,6 +27,9 @@ struct GivenArm {
     /// Computes base_from_flange [m, rad] at joint positions [rad]. Called on the arm's thread, for
     /// a stream that takes poses instead of joint positions; none: such a stream is refused.
     std::function<Frame(const device::JointArray&)> pose_at{};
+    /// BrowseName of the arm's motion device; empty: the stream is part of it, or it is the only
+    /// one.
+    std::string device{};
 };
 
 /// Settings of an arm of another server.
@@ -39,6 +42,8 @@ struct RemoteArmOptions {
     std::optional<opcua::Credentials> security{};
     /// Model of the arm; used if the server publishes no Kinematics.
     std::optional<GivenArm> given{};
+    /// Controller of the stream, for a server with several arms; empty: the server has one stream.
+    std::string controller{};
 };
 
 /// An arm of another OPC UA server. Its set-points are written to the position stream of that
@@ -65,7 +70,8 @@ public:
     /// Connects and reads the arm's description; waits.
     /// Errors: connection_lost, timeout; not_found if the server has no PositionStreamSkill or
     ///         publishes no Kinematics for it and no model is given; invalid_argument if the axes
-    ///         of a given model are not those of the server.
+    ///         of a given model are not those of the server, or if it has several streams, or
+    ///         motion devices, and nothing says which.
     /// Threads: any but a server's; the result may be used on any.
     static Result<std::unique_ptr<RemoteArm>> connect(RemoteArmOptions options);
     /// Chain and limits, as the server published them at connect(), or as they were given.

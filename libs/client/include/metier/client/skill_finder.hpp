@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "metier/opcua/client.hpp"
@@ -30,6 +31,15 @@ struct SkillAddress {
     };
     /// All of them; empty for a skill right below the Objects folder.
     std::vector<Above> above;
+    /// BrowseNames of the types from which its type is derived, the nearest first, up to the one
+    /// directly below ProgramStateMachineType.
+    std::vector<std::string> base_types{};
+
+    /// Whether it may stand in for a skill of a type: its type is that one or is derived from it.
+    /// A name may lack the ending "Type", as those of the published gripper skills do. A force move
+    /// stands in for no other move, since it needs a force.
+    /// \param wanted BrowseName
+    bool servesAs(std::string_view wanted) const;
 
     /// The controller of the skill: the object that has the folder `Skills`. Null if there is none.
     /// Valid as long as this address is not changed.

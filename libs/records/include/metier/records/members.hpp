@@ -22,7 +22,7 @@ enum class Table : std::uint8_t { executions, kinds, notes };
 /// shown as a text.
 enum class Form : std::uint8_t { name, key, json };
 
-/// Description of a member of Execution or Transition. JSON, SQL, the limits of texts and the
+/// Description of a member of ExecutionRow or Transition. JSON, SQL, the limits of texts and the
 /// memory that a record takes all use these descriptions.
 /// Texts are literals of this file and valid for ever.
 struct Member {
