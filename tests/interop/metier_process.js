@@ -147,6 +147,7 @@ function startMetier(args, begun) {
   const child = spawn(metierProgram(), [...kLab, ...args], { stdio: ['ignore', 'pipe', 'pipe'] });
   awaitExit(child);
   let output = '';
+  let waiting = true;  // for what has begun
   const closed = new Promise((resolve) => child.once('close', (status) => resolve({ status, output })));
   return new Promise((resolve, reject) => {
     const timer = setTimeout(() => {
@@ -156,7 +157,8 @@ function startMetier(args, begun) {
     for (const stream of [child.stdout, child.stderr]) {
       stream.setEncoding('utf8').on('data', (text) => {
         output += text;
-        if (begun.test(output)) {
+        if (waiting && begun.test(output)) {
+          waiting = false;
           clearTimeout(timer);
           doNotWaitFor(child);
           resolve({

@@ -108,18 +108,19 @@ void ForeignRun::looked(const std::string& id,
         const std::lock_guard lock(mutex_);
         halted_by = halted_by_;
     }
-    if (record->state == State::halted) {
-        end(id, halted_by.empty()
-                    ? UsedSkillEnd{Kind::halted, {}, record->reason, record->reason_text}
-                    : UsedSkillEnd{Kind::halted, {}, Reason::by_client, halted_by});
-    } else if (record->state == State::ready && record->reason == Reason::finished) {
+    const bool over = record->state == State::halted || record->state == State::ready;
+    const bool failed = record->reason == Reason::error;  // halted, and perhaps reset since
+    if (over && failed && !halted_by.empty()) {
+        end(id, {Kind::halted, {}, Reason::by_client, halted_by});
+    } else if (record->state == State::halted) {
+        end(id, {Kind::halted, {}, record->reason, record->reason_text});
+    } else if (over && record->reason == Reason::finished) {
         end(id, {Kind::finished, record->result});
-    } else if (record->state == State::ready) {
+    } else if (over) {
         end(id, {Kind::halted,
                  {},
                  record->reason,
-                 record->reason == Reason::error ? "it was halted, then reset"
-                                                 : "it was suspended, then reset"});
+                 failed ? "it was halted, then reset" : "it was suspended, then reset"});
     }
 }
 
