@@ -65,7 +65,7 @@ test('values of types that skills of metier do not have are sent and read', asyn
 for (const skill of namesWith('Suspend')) {
   test(`${skill} is suspended and goes on, as watch shows`, async () => {
     const watching = await startMetier(['watch', server.url, skill, '--count', '4'], /watching/);
-    const running = run(skill, ...setLasting(skill, 3));
+    const running = run(skill, ...setLasting(skill, 2));
     await awaitState(server.url, skill, 'Running');
     assert.strictEqual((await runMetier(['suspend', server.url, skill])).status, 0);
     await awaitState(server.url, skill, 'Suspended');
@@ -137,7 +137,7 @@ for (const { name, methods } of kShapes) {
     const done = await runMetier(['run', other.url, name, ...setLasting(name, 0.3)]);
     assert.strictEqual(done.status, 0, done.errors);
     assert.match((await watching.end).output, /Ready -> Running.*Running -> Ready/s);
-    const running = runMetier(['run', other.url, name, ...setLasting(name, 10)]);
+    const running = runMetier(['run', other.url, name, ...setLasting(name, methods.includes('Halt') ? 20 : 2)]);
     await awaitState(other.url, name, 'Running');
     const halted = await runMetier(['halt', other.url, '--skill', name]);
     assert.strictEqual(halted.status === 0, methods.includes('Halt'), halted.errors);
